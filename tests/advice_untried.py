@@ -54,6 +54,5 @@ UNTRIED = {
     "open_light_field: or import with lfimport --bayer RGGB": CAPTURE + "camera raw files without a pattern",
     "read_stanford: correct --pitch, or the position": CAPTURE + "positions beyond 1e12 world units",
     "ngp_path: give their number (lfpath --frames)": CAPTURE + "a path of instant-ngp of many hours",
-    "forecast_report: give --depths": CAPTURE + "depths that cannot be estimated",
     "render_densified: once they are mended, render again with --overwrite": CAPTURE + "a sparse one",
 }

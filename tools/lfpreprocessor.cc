@@ -227,7 +227,7 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   lf::ThreadPool pool(common.threads);
   // Packages hold the cameras of the whole path.
   LF_RETURN_IF_ERROR(lf::AddFocalSurfaces(a.path, light_field, {{}, &pool, &interrupted}, &path));
-  const std::string depths_from = lf::KnowDepths(light_field, path, pool, &options);
+  const lf::DepthSource depths_from = lf::KnowDepths(light_field, path, pool, &options);
   lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), "frames");
   LF_ASSIGN_OR_RETURN(
       const lf::PreprocessReport report,
@@ -243,6 +243,7 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   facts.read_s = read_s;
   facts.rebins = lf::Rebins(options.film.mode);
   facts.depths_from = depths_from;
+  facts.depths_argument = "--depths";
   const lf::Result<void> end = lf::EndWithMissing(
       {report.missing_count, report.needed_count, lf::MissingText(report),
        "renders of these packages leave them out, unless they are mended before"},

@@ -380,8 +380,6 @@ def _preprocess(field: LightField, path: Union[Path, Camera], frames: Frames, wo
         facts = _facts(_core.preprocess(
             field._core, os.fsencode(field.source), [camera._core for camera in cameras], cameras.fps,
             cameras._shutter, frame_numbers(frames, len(cameras)), film, words, arguments.thread_count(threads), tell))
-    if facts["depths_from"] == "--depths":
-        facts["depths_from"] = "depths"
     return facts
 
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "lf/core/check.h"
 #include "lf/core/quantities.h"
 #include "lf/distribute/preprocess/forecast_advice.h"
 
@@ -89,23 +90,38 @@ void AddDensity(const PreprocessReport& report, const CameraPath& path, std::str
   }
 }
 
-}  // namespace
-
-namespace {
-
 // Returns " and N virtual ones", to follow a number of recorded LF images; "" if N is 0.
 std::string AndVirtual(size_t count) {
   return count > 0 ? fmt::format(" and {} virtual ones", count) : "";
 }
 
+bool AreKnown(const ForecastFacts& facts) { return facts.depths_from != DepthSource::kUnknown; }
+
+// Returns the source of the depths in JSON.
+Json SourceJson(const ForecastFacts& facts) {
+  switch (facts.depths_from) {
+    case DepthSource::kUnknown:
+      return nullptr;
+    case DepthSource::kStated:
+      return facts.depths_argument;
+    case DepthSource::kCalibration:
+      return "the calibration";
+    case DepthSource::kLfImages:
+      return "LF images";
+  }
+  LF_CHECK(false);
+}
+
 // Returns text that says that the depths of the scene were estimated, or how to state unknown
 // depths; "" if the user or the calibration stated them.
 std::string DepthsText(const ForecastFacts& facts) {
-  if (facts.depths_from == "LF images") return " (depths estimated from LF images)";
-  if (!facts.depths_from.empty()) return "";
-  return " (assumed to be 25 % off the focus distance; no focus distance is advised, because "
-         "neither the calibration nor the LF images tell the depths of the scene: give --depths "
-         "NEAR FAR, lf_depth_range in transforms.json, or the points3D of a COLMAP model)";
+  if (facts.depths_from == DepthSource::kLfImages) return " (depths estimated from LF images)";
+  if (AreKnown(facts)) return "";
+  return fmt::format(
+      " (assumed to be 25 % off the focus distance; no focus distance is advised, because neither "
+      "the calibration nor the LF images tell the depths of the scene: give {} NEAR FAR, "
+      "lf_depth_range in transforms.json, or the points3D of a COLMAP model)",
+      facts.depths_argument);
 }
 
 }  // namespace
@@ -121,7 +137,7 @@ std::vector<std::string> DensityWarnings(const PreprocessReport& report, const C
                                          const ForecastFacts& facts) {
   std::vector<std::string> warnings;
   if (report.missing_count > 0) warnings.push_back(MissingText(report));
-  const ForecastAdvice advice = AdviceOf(report, path, !facts.depths_from.empty());
+  const ForecastAdvice advice = AdviceOf(report, path, AreKnown(facts));
   const FrameForecast& sparse =
       Worst(report, [](const FrameForecast& frame) { return frame.density.MostDisplacement_px(); });
   const double most_px = sparse.density.MostDisplacement_px();
@@ -259,7 +275,7 @@ std::string ForecastJson(const PreprocessReport& report, const CameraPath& path,
   json["order"] = NameOf(facts.order);
   json["seed"] = facts.seed;
   json["unit_m"] = path.unit_m;
-  json["depths_from"] = facts.depths_from.empty() ? Json() : Json(facts.depths_from);
+  json["depths_from"] = SourceJson(facts);
   json["threads"] = facts.thread_count;
   json["largest_over_mean_rays"] = LargestOverMean(report.packages);
   json["rate"] = report.rate ? Json{{"cpu_s_per_lf_image", report.rate->load_s},
@@ -312,7 +328,7 @@ std::string ForecastJson(const PreprocessReport& report, const CameraPath& path,
   json["warnings"] = Json::array();
   const auto text = [&] { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; };
   if (report.frames.empty()) return text();
-  const ForecastAdvice advice = AdviceOf(report, path, !facts.depths_from.empty());
+  const ForecastAdvice advice = AdviceOf(report, path, AreKnown(facts));
   json["advice"] = {
       {"focus_distance",
        advice.focus ? Json{advice.focus->near_w, finite(advice.focus->far_w)} : Json()},

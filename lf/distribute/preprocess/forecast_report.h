@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lf/camera/path/camera_path.h"
+#include "lf/distribute/preprocess/known_depths.h"
 #include "lf/distribute/preprocess/preprocess.h"
 
 namespace lf {
@@ -19,8 +20,8 @@ struct ForecastFacts {
   uint64_t seed = 0;
   int thread_count = 1;
   double read_s = 0;  // seconds that it took to read the calibration
-  // Source of the scene's depths: "--depths", "the calibration", "LF images"; empty: unknown.
-  std::string depths_from;
+  DepthSource depths_from = DepthSource::kUnknown;
+  std::string depths_argument = "depths";  // what PreprocessOptions::depths is called by the caller
 };
 
 // Returns warnings about missing LF images, double edges, black frames, and lenses that exceed the

@@ -6,16 +6,16 @@
 
 namespace lf {
 
-std::string KnowDepths(const LightField& light_field, const CameraPath& path, ThreadPool& pool,
+DepthSource KnowDepths(const LightField& light_field, const CameraPath& path, ThreadPool& pool,
                        PreprocessOptions* options) {
-  if (options->depths) return "--depths";
-  if (light_field.depth_range) return "the calibration";
+  if (options->depths) return DepthSource::kStated;
+  if (light_field.depth_range) return DepthSource::kCalibration;
   const FrameId first = options->frames.empty() ? FrameId{1} : options->frames.front();
   const auto store = OpenStore(light_field, Mosaics::kToRgb);
-  if (!store || path.frame_count() == 0) return "";
+  if (!store || path.frame_count() == 0) return DepthSource::kUnknown;
   options->depths =
       SweptDepths(light_field, **store, path.Camera(first).pinhole.CentreWorld(), pool);
-  return options->depths ? "LF images" : "";
+  return options->depths ? DepthSource::kLfImages : DepthSource::kUnknown;
 }
 
 }  // namespace lf
