@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
 """Fails if a folder of lf/ includes what its lf_folder(... DEPENDS ...) does not allow, if a third-party header is
-included outside the folders that own it, if anything in lf/ includes tools/ or tests/, or if rooms depend on each other
-in a cycle. A room is a folder directly in lf/, with the folders inside it.
+included outside the folders that own it, if anything in lf/ or python/ includes tools/ or tests/, if anything but
+tools/ includes CLI11, or if rooms depend on each other in a cycle. A room is a folder directly in lf/, with the folders
+inside it. Also fails if a CMakeLists.txt outside of tools/ links CLI11 or compiles a source of tools/.
 
 usage: check_includes.py REPOSITORY
 """
@@ -38,6 +39,10 @@ OWNERS = {
     "microhttpd": set(),
 }
 
+
+# Folders beside lf/ and tools/ that have sources in C++.
+OTHERS = ("python", "tests", "bench", "examples")
+OF_COMMAND_LINES = re.compile(r"\bCLI11::|\btools/")
 
 INCLUDE = re.compile(r'\s*#\s*include\s*[<"]([^>"]+)[>"]')
 
@@ -81,6 +86,24 @@ def source_faults(root, source, folders):
             yield f"{source.relative_to(root)}:{number}: {fault}"
 
 
+def other_faults(root):
+    """Yields the faults of the sources beside lf/ and tools/, and of what any folder but tools/ links and compiles."""
+    for source in sorted(p for name in OTHERS for p in (root / name).rglob("*") if p.suffix in (".cc", ".h")):
+        place = source.relative_to(root)
+        for number, line in enumerate(source.read_text().splitlines(), 1):
+            match = INCLUDE.match(line)
+            name = match.group(1) if match else ""
+            if name.startswith("CLI/"):
+                yield f"{place}:{number}: <{name}> belongs to tools"
+            if place.parts[0] == "python" and name.startswith(("tools/", "tests/")):
+                yield f"{place}:{number}: python stands on lf alone, and must not include {name}"
+    for cmake in sorted(p for name in ("lf", *OTHERS) for p in (root / name).rglob("CMakeLists.txt")):
+        for number, line in enumerate(cmake.read_text().splitlines(), 1):
+            match = OF_COMMAND_LINES.search(line.partition("#")[0])
+            if match:
+                yield f"{cmake.relative_to(root)}:{number}: only tools may have {match.group().strip()}"
+
+
 def reached_from(room, rooms):
     """Returns the rooms that a room depends on, directly or through others."""
     reached, open_rooms = set(), [room]
@@ -109,7 +132,7 @@ def main() -> int:
     root = pathlib.Path(sys.argv[1])
     folders = folder_list.read_folders(root)
     sources = sorted(p for p in (root / "lf").rglob("*") if p.suffix in (".cc", ".h"))
-    faults = [*folder_faults(folders), *room_faults(folders)]
+    faults = [*folder_faults(folders), *room_faults(folders), *other_faults(root)]
     for source in sources:
         faults += source_faults(root, source, folders)
     print("\n".join(faults) or f"{len(sources)} files, no forbidden include")

@@ -125,6 +125,27 @@ class PlantedFaults(unittest.TestCase):
         self.expect("check_includes.py",
                     faults=["lf/core/a.cc:1", "lf/core/a.cc:2", "lf/camera/b.h:2"])
 
+    def test_command_lines_are_found_outside_of_the_programs(self):
+        self.plant("lf/core/CMakeLists.txt", "lf_folder(core SOURCES a.cc)\n")
+        self.plant("lf/core/a.cc", "")
+        self.plant("tools/lfa.cc", '#include <CLI/CLI.hpp>\n#include "tools/common/d.h"\n')
+        self.plant("tools/CMakeLists.txt", "target_link_libraries(lfa PRIVATE CLI11::CLI11)\n")
+        self.plant("python/src/b.cc", '#include "python/src/b.h"\n#include "lf/core/a.h"\n')
+        self.plant("python/CMakeLists.txt", "# Nothing of tools/.\nadd_library(b src/b.cc)\n")
+        self.plant("tests/c.cc", '#include "tools/common/d.h"\n')
+        self.expect("check_includes.py", faults=[])
+        self.plant("lf/core/a.cc", "#include <CLI/CLI.hpp>\n")
+        self.plant("python/src/b.cc", '#include "lf/core/a.h"\n#include "tools/common/d.h"\n#include "tests/e.h"\n'
+                                      "#include <CLI/App.hpp>\n")
+        self.plant("python/CMakeLists.txt", 'set(others "${PROJECT_SOURCE_DIR}/tools/d.cc")\n'
+                                            "target_link_libraries(b CLI11::CLI11)\n")
+        self.plant("tests/c.cc", "#include <CLI/CLI.hpp>\n")
+        self.expect("check_includes.py", faults=[
+            "lf/core/a.cc:1: <CLI/CLI.hpp> belongs to tools", "python/src/b.cc:2: python stands on lf alone",
+            "python/src/b.cc:3: python stands on lf alone", "python/src/b.cc:4: <CLI/App.hpp>",
+            "python/CMakeLists.txt:1: only tools may have tools/", "python/CMakeLists.txt:2: only tools may have CLI11",
+            "tests/c.cc:1: <CLI/CLI.hpp>"])
+
     def test_folders_inside_others_are_named_by_their_paths(self):
         self.plant("lf/core/CMakeLists.txt", "lf_folder(core SOURCES a.cc)\n")
         self.plant("lf/core/a.cc", "#include <vector>\n")
