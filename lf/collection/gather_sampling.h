@@ -7,34 +7,10 @@
 
 #include "lf/camera/pinhole.h"
 #include "lf/camera/render_camera.h"
+#include "lf/collection/pixel_filter.h"
 #include "lf/collection/prefilter/prefilter.h"
 
 namespace lf {
-
-// Filters that compute the value of a ray from the LF pixels around it:
-//   kNearest   takes the value of the nearest pixel
-//   kBilinear  interpolates linearly between four pixels
-//   kBicubic   interpolates between sixteen pixels by Catmull and Rom's cubics. This restores some
-//              of the sharpness that is lost because a camera averages over each pixel, and takes
-//              three times as long as kBilinear. If one of the outer twelve pixels is outside the
-//              image or masked, the ray is bilinear
-//   kMosaic    is for RGB pixels made from a mosaic. A recorded colour counts more than an
-//              interpolated one (mosaic_filter.h), and the ray adds a count from 1 to
-//              kRecordedShare to each colour. It uses
-//                - four values of an LF image that was filtered before, if LF pixels show areas and
-//                  are not finer than elements
-//                - values of an LF image that was filtered by shares (Prefilter::by_shares), if
-//                  elements are at least kMosaicByShares LF pixels wide: sixteen, or four from
-//                  kMosaicOfFour on
-//                - otherwise sixteen pixels for each sample
-//   kPrefiltered  interpolates linearly between four values of an LF image that was filtered before
-//              (prefilter.h), so that an element of any size needs only one sample
-//   kAuto      stands for the filter that FilterOf() returns for the whole light field;
-//              SamplingOf() takes it as kPrefiltered
-enum class PixelFilter { kAuto, kNearest, kBilinear, kBicubic, kMosaic, kPrefiltered };
-
-// Returns "auto", "nearest", "bilinear", "bicubic", "mosaic" or "prefiltered".
-const char* NameOf(PixelFilter filter);
 
 // Returns the filter that `filter` stands for, which is never kAuto. kAuto is
 //   kMosaic      for mosaics, unless an option needs the number of rays of elements (counts_rays,
@@ -43,16 +19,6 @@ const char* NameOf(PixelFilter filter);
 //                at whose borders a prefilter lacks pixels
 //   kPrefiltered otherwise
 PixelFilter FilterOf(PixelFilter filter, const RadianceEncoding& encoding, bool counts_rays);
-
-// A filter, and what it needs to know of LF pixels.
-struct PixelReading {
-  PixelFilter filter = PixelFilter::kAuto;
-  std::optional<PixelFootprint> footprint = std::nullopt;  // used by prefilters; unset: kArea
-
-  PixelReading() = default;
-  PixelReading(PixelFilter the_filter)
-      : filter(the_filter) {}  // NOLINT: implicit, because `footprint` has a default
-};
 
 // Widths of elements, in LF pixels, from which a mosaic is filtered by shares, and from which four
 // filtered values are read instead of sixteen. They were chosen with pictures of true lenses

@@ -17,17 +17,10 @@
 #include "lf/core/large_vector.h"
 #include "lf/core/parallel.h"
 #include "lf/rebinning/frame_queries.h"
+#include "lf/rebinning/rebin_options.h"
 #include "lf/rebinning/slab_plan.h"
 
 namespace lf {
-
-struct CoverageOptions {
-  size_t most_bytes = size_t{32} << 20;  // cells are widened if the map would be larger
-  // Number of cells on the uv plane across the plate of the frame that sees the narrowest part of
-  // the plane; fewer if cells would be narrower than eight LF pixels. A cell on the st plane is
-  // half as wide as the smallest reach (kReach_sigmas * QueryKernel::sigma_st_w) of the frames.
-  int cells_across = 64;
-};
 
 class CoverageMap {
  public:

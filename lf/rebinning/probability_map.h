@@ -17,18 +17,9 @@
 #include "lf/core/image.h"
 #include "lf/light_field/model/lf_pixels.h"
 #include "lf/light_field/model/radiance.h"
+#include "lf/rebinning/rebin_options.h"
 
 namespace lf {
-
-struct ProbabilityOptions {
-  double sigma_px = 1;         // sigma of the Gaussian, at most kMostSigma_px; 0: no smoothing
-  double alpha = 8;            // factor of |LoG|, if black is 0 and white is 1; at most kMostAlpha
-  double beta = 0;             // threshold of |LoG|, if black is 0 and white is 1
-  double xi = 0.05;            // least p of pixels whose |LoG| reaches beta; in [0, 1)
-  double second_sigma_px = 0;  // sigma of another Gaussian, which smooths p; 0: no smoothing
-};
-inline constexpr double kMostSigma_px = 8;
-inline constexpr double kMostAlpha = 255;
 
 // Returns a table of 65536 stored values, 0 for black to 65535 for white: one for each 16-bit
 // linear value (light_field/model/radiance.h). It is the inverse of RadianceTable() with a gain of

@@ -19,19 +19,10 @@
 #include "lf/rebinning/coverage_map.h"
 #include "lf/rebinning/probability_map.h"
 #include "lf/rebinning/ray_map.h"
+#include "lf/rebinning/rebin_options.h"
 
 namespace lf {
 
-struct RebinOptions {
-  ProbabilityOptions probability;
-  uint64_t seed = 0;
-  // If true, rays that are not kept are added to the cells that exist already. This reduces noise,
-  // but takes longer, because the cell of every pixel's ray must be found (thesis 5.3).
-  bool averages_others = false;
-  // Sigma of a Gaussian that smooths each channel over the LF pixels that recorded it. Reduces
-  // noise if few rays are kept. At most kMostSigma_px; 0: colours as recorded.
-  double colour_sigma_px = 0;
-};
 // Returns the largest distance, in LF pixels, between a pixel and another pixel that its p or the
 // colour of its ray depends on.
 int PixelsAround(const RebinOptions& options, bool is_mosaic);

@@ -21,17 +21,10 @@
 
 #include "lf/core/geometry.h"
 #include "lf/rebinning/frame_queries.h"
+#include "lf/rebinning/rebin_options.h"
 #include "lf/rebinning/slab.h"
 
 namespace lf {
-
-// Each value that is set overrides the planner's choice.
-struct SlabChoices {
-  std::optional<Vec3> position_world;    // position of the st plane
-  std::optional<Vec3> forward_world;     // direction that the st plane faces
-  std::optional<double> uv_distance_w;   // distance of the uv plane from the st plane; above 0
-  std::optional<double> r_st_w, r_uv_w;  // widths of cells on each plane, world units; above 0
-};
 
 // Bounds of points of a slab, in world units along its axes.
 struct SlabBounds {

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <span>
 
+#include "lf/light_field/model/lf_pixels.h"
 #include "lf/render/state/record_fields.h"
 
 namespace lf {

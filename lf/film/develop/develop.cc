@@ -10,6 +10,7 @@
 
 #include "lf/film/develop/channel_fill.h"
 #include "lf/film/develop/develop_opacity.h"
+#include "lf/film/plate/sensor_plate.h"
 
 namespace lf {
 namespace {

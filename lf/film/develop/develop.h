@@ -10,9 +10,11 @@
 #include "lf/core/geometry.h"
 #include "lf/core/image.h"
 #include "lf/core/parallel.h"
-#include "lf/film/plate/sensor_plate.h"
+#include "lf/film/develop/picture.h"
 
 namespace lf {
+
+class SensorPlate;  // film/plate/sensor_plate.h
 
 // The part of a frame that was interpolated from rebinned rays (render/hybrid/rebinned_rays.h).
 struct Completion {
@@ -69,30 +71,6 @@ struct DevelopOptions {
 // recorded rays that are out of focus.
 inline constexpr double kGuardFrom = 0.1;
 inline constexpr double kGuardTo = 0.2;
-
-struct DevelopedFrame {
-  Image<float> rgb;  // [height][width][3] linear light, sRGB primaries
-  // [height][width][3] number of rays; for a guarded plate, the number of recorded rays where there
-  // are some
-  Image<uint32_t> ray_count;
-  Image<float> coverage;  // [height][width] share of the channels with a ray of their own
-  // [height][width] in [0, 1]; empty for a plate without opacities, unless they were added
-  // (DevelopOptions::adds_opacity). rgb is multiplied by it.
-  Image<float> opacity = {};
-  // [height][width] number of LF images of equal weight that would give the same noise; empty
-  // without lens weights. Develop() leaves it empty: callers fill it. With lens weights, ray_count
-  // holds sums of weights.
-  Image<float> effective_count = {};
-  // [height][width] share of each element that was interpolated from rebinned rays; empty without
-  // completion
-  Image<float> interpolated = {};
-  // [height][width] share of each element that shows the rays of all LF images, virtual ones
-  // included, instead of those of recorded LF images alone; empty unless the plate is guarded
-  Image<float> densified = {};
-  // [height][width] depth, along the optical axis, at which each element is in focus. Develop()
-  // leaves it empty: callers fill it.
-  Image<float> focus_depth_w = {};
-};
 
 // Averages the rays of every element and channel, and mixes (1 - share) of the average with share
 // of the completion; the completion is taken alone if no ray was collected. An element without

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lf/core/random.h"
+#include "lf/film/plate/sensor_plate.h"
 
 namespace lf {
 namespace {

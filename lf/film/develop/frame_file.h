@@ -12,40 +12,10 @@
 
 #include "lf/core/ids.h"
 #include "lf/core/result.h"
-#include "lf/film/develop/colour_space.h"
-#include "lf/film/develop/develop.h"
-#include "lf/film/develop/display_view.h"
+#include "lf/film/develop/picture.h"
 #include "lf/pixels/files/image_file.h"
 
 namespace lf {
-
-enum class FrameFormat {
-  // "exr": an EXR file with the channels R G B count.R count.G count.B coverage. Opacities add A,
-  // by which R G B are multiplied; lens weights add the channel effective, rebinned rays add
-  // interpolated, guarded plates add densified, and focus depths add Z. Counts are 32-bit integers,
-  // Z is float, and all other channels are half.
-  kExrHalf,
-  kExrFloat,  // "exr-float": as "exr", with float instead of half
-  kPng8,      // "png": sRGB, 8 bit; opacities add alpha, by which RGB is not multiplied
-  kPng16,     // "png16": as "png", with 16 bit
-};
-
-// Parses "exr", "exr-float", "png" or "png16"; none for any other text.
-std::optional<FrameFormat> ParseFrameFormat(std::string_view name);
-const char* NameOf(FrameFormat format);
-bool IsExr(FrameFormat format);
-
-// How the file of a frame shows its picture.
-struct PictureOptions {
-  // Must be kRec709 for PNG files, whose values are sRGB.
-  ColourSpace colours = ColourSpace::kRec709;
-  // True: EXR files get the channel Z, the depth at which each element is in focus. Must be false
-  // for PNG files.
-  bool has_focus_depth = false;
-  // The view that gives the values of PNG files; null: the sRGB curve. Must be null for EXR files.
-  std::shared_ptr<const DisplayView> view = nullptr;
-  friend bool operator==(const PictureOptions&, const PictureOptions&) = default;
-};
 
 // Returns a path such as DIR/frame_0001.exr. The number has at least four digits.
 std::filesystem::path FramePath(const std::filesystem::path& folder, FrameId frame,

@@ -19,6 +19,7 @@
 #include "lf/light_field/model/light_field.h"
 #include "lf/render/collect/collect_batch.h"
 #include "lf/render/collect/collected_frame.h"
+#include "lf/render/collect/frame_rays.h"
 #include "lf/render/collect/image_consumer.h"
 #include "lf/selection/select.h"
 #include "lf/storage/load/lf_image_store.h"
@@ -61,12 +62,6 @@ struct CollectOptions {
   bool strict = false;  // true: a broken LF image is an error; false: it is skipped
   // Once it is true, Step() returns kInterrupted, unless no work is left. Null: nothing interrupts.
   const std::atomic<bool>* interrupted = nullptr;
-};
-
-struct SkippedImage {
-  std::string name;    // name in LightField::image_names
-  std::string reason;  // says why it was skipped, for messages
-  uint32_t place = 0;  // rank of the LF image in the order
 };
 
 struct CollectTimes {

@@ -13,6 +13,7 @@
 #include "lf/core/ids.h"
 #include "lf/film/plate/sensor_plate.h"
 #include "lf/light_field/model/radiance.h"
+#include "lf/render/collect/frame_rays.h"
 #include "lf/render/collect/noise_moments.h"
 #include "lf/selection/select.h"
 
@@ -21,24 +22,6 @@ namespace lf {
 // Returns the weights of the rays of an LF image in a frame; 0 if the frame does not take the LF
 // image. Any thread may call it. An empty function means that every ray has weight 1.
 using ImageWeights = std::function<RayWeights(LfImageId id)>;
-
-struct FrameRays {
-  uint64_t image_count = 0;  // number of recorded LF images with an accepted ray
-  // number of LF pixels in the rectangles that the frame needs, sum of its instants
-  uint64_t tested_count = 0;
-  // Number of rays that were added to the plate. It includes rays of weight 0, except in tiles of
-  // the plate (TileSums::GridOf()) whose elements all have weight 0, because these are passed over.
-  uint64_t accepted_count = 0;
-  uint64_t virtual_count = 0;  // number of virtual LF images with an accepted ray
-
-  FrameRays& operator+=(const FrameRays& more) {
-    image_count += more.image_count;
-    tested_count += more.tested_count;
-    accepted_count += more.accepted_count;
-    virtual_count += more.virtual_count;
-    return *this;
-  }
-};
 
 // Progress of a frame. Its plate has the rays of exactly those LF images that the frame takes and
 // whose places are below places_done. Broken LF images count as done.

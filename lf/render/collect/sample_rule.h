@@ -15,6 +15,7 @@
 #include "lf/film/plate/sensor_plate.h"
 #include "lf/light_field/model/light_field.h"
 #include "lf/render/collect/collect_batch.h"
+#include "lf/render/collect/frame_rays.h"
 #include "lf/selection/select.h"
 
 namespace lf {
@@ -73,13 +74,6 @@ uint32_t DecisionPlaces(size_t light_field_image_count, size_t frame_image_count
 // them.
 bool HasSamples(const SensorPlate& plate, const ReachableElements& reachable, uint32_t samples);
 
-// The result of MeasureSamples().
-struct SampleShare {
-  // Share of the reachable elements that have at least `samples` rays in every channel; 1 if no
-  // element is reachable.
-  double share = 1;
-  uint64_t most_have = 0;  // largest N for which the rule "samples>=N" is met
-};
 SampleShare MeasureSamples(const SensorPlate& plate, const ReachableElements& reachable,
                            uint32_t samples);
 

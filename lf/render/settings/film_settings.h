@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // All that is said of a film besides its light field and its path: what its frames are made of, and
-// how the work is done. The defaults are those of all programs. render/pipeline/render.h adds the
-// folder that frames are written into.
+// how the work is done. The defaults are those of all programs. render/pipeline/folder_options.h
+// adds the folder that frames are written into.
 #pragma once
 
 #include <atomic>
@@ -16,33 +16,38 @@
 #include "lf/render/settings/shard.h"
 #include "lf/render/settings/stop_rules.h"
 #include "lf/selection/image_order.h"
-#include "lf/selection/lens_weights/frame_weights.h"
+#include "lf/selection/lens_weights/lens_weights.h"
 
 namespace lf {
 
 // These settings, the light field and the path decide every bit of a frame.
 struct FilmSettings {
+  // Which rays frames are made of: kCollect, kRebin or kHybrid (doc/rebinning.md).
   RenderMode mode = RenderMode::kCollect;
   // Unused if the mode is kCollect. If rebin.max_cells is 0, there are as many cells as fit in half
   // of the memory (kRebin), or in a quarter of it (kHybrid). Its seeds are replaced by `seed`.
   RebinSettings rebin;
+  // How rays are read from LF images: reading.estimator is kBilinear or kNearest; reading.filter, a
+  // PixelFilter, is used by kBilinear alone.
   // The filter must not be kMosaic if the estimator is kBilinear and CountsRays() is true, because
   // the filter counts a ray up to 8 times.
   RayReading reading = Estimator::kBilinear;
+  // How LF cameras are weighted by the part of the lens that each stands for: kAuto, kArea, kHat or
+  // kNone (doc/lens-integral.md).
   // If CountsRays() is true, must be kNone or kAuto (which Resolved() then replaces by kNone),
   // because weighted counts are not ray counts. Otherwise, must be kNone if the package has no
   // neighbours.
   LensWeights lens_weights = LensWeights::kAuto;
+  // kReference is about 50 times slower; tests use it.
   CollectBackEnd back_end = CollectBackEnd::kFast;
   // True: frames of a densified light field have guarded plates (FilmSetup::is_guarded()), so that
   // they are never worse than frames of its recorded LF images alone (doc/densify.md). Changes
   // nothing for other light fields.
   bool guard = true;
 
-  // The next three settings select the LF images of a whole light field (PackageOfFilm() in
-  // render/pipeline/film_package.h). They are unused if packages are rendered, because a package
-  // states them itself (PackageChoices).
-  ImageOrder order = ImageOrder::kShuffle;  // in which frames take LF images
+  // The next three settings select the LF images of a whole light field. They are unused if
+  // packages are rendered, because a package states them itself (PackageChoices).
+  ImageOrder order = ImageOrder::kShuffle;  // in which frames take LF images; kRoundRobin, kArea
   uint64_t seed = 0;                        // of the order kShuffle and of rebinned rays
   // If set, the largest angle between the axes of LF camera and frame, above 0.
   std::optional<double> max_angle_rad;
@@ -71,8 +76,11 @@ struct FilmSettings {
   //            channel
   //   noise    its noise, and this limit
   StopRule require;
-  // smooth_below and fill_radius_px: see DevelopOptions in film/develop/develop.h.
+  // An element with fewer rays than this in a channel, but at least one, is averaged with its
+  // neighbours (DevelopOptions). 0 or 1: none is.
   uint32_t smooth_below = 0;
+  // An element without a ray in a channel takes light from elements that have one, at most this
+  // number of elements away; it stays black if there are none. 0: all stay black.
   int fill_radius_px = kFillRadius_px;
   // True: all frames have an opacity (DevelopOptions::adds_opacity).
   bool adds_opacity = false;
@@ -92,8 +100,9 @@ struct FilmSettings {
 // These settings decide how the work is done. The frames have the same bits for any values, with
 // one exception: if rebin.max_cells is 0, the number of rebinned rays follows from memory_bytes.
 struct WorkSettings {
+  // Memory for LF images, frames and rebinned rays. Films that need more are rendered in parts.
   size_t memory_bytes = size_t{8} << 30;
-  // Number of threads of functions that make their own ThreadPool (api/); 0: one for each
+  // Number of threads of RenderFrame(), FrameRenderer and RenderFilm() (api/); 0: one for each
   // processor.
   int threads = 0;
   bool strict = false;        // true: a broken LF image is an error; false: it is skipped
@@ -103,7 +112,7 @@ struct WorkSettings {
   const std::atomic<bool>* interrupted = nullptr;
   // If not null: when any thread sets it to true, all functions that take these settings end soon
   // with kInterrupted. That thread must then set `interrupted` to true as well, because a step
-  // (FilmRenderer::Step()) reads only `interrupted`.
+  // (FrameRenderer::Step()) reads only `interrupted`.
   const std::atomic<bool>* stop = nullptr;
 
   bool IsStopped() const { return stop != nullptr && *stop; }

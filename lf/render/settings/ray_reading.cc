@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lf/render/settings/ray_reading.h"
 
+#include "lf/selection/overlap.h"
+
 namespace lf {
 
 const char* NameOf(Estimator estimator) {

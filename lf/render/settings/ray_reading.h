@@ -2,10 +2,11 @@
 // Says how rays are made from the pixels of LF images (doc/ray.md, "What is added").
 #pragma once
 
-#include "lf/collection/gather_sampling.h"
-#include "lf/selection/overlap.h"
+#include "lf/collection/pixel_filter.h"
 
 namespace lf {
+
+enum class PixelReach;  // selection/overlap.h
 
 // How rays are found. kNearest: the ray of every LF pixel is added to the element that it hits.
 // kBilinear: every element samples each LF image at the position that it sees there. For kBilinear,

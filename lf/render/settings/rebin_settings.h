@@ -6,9 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "lf/rebinning/coverage_map.h"
-#include "lf/rebinning/rebin_image.h"
-#include "lf/rebinning/slab_plan.h"
+#include "lf/rebinning/rebin_options.h"
 
 namespace lf {
 

@@ -15,22 +15,22 @@
 
 #include "lf/core/ids.h"
 #include "lf/core/result.h"
-#include "lf/film/develop/develop.h"
-#include "lf/render/collect/collect.h"
-#include "lf/render/collect/sample_rule.h"
+#include "lf/film/develop/picture.h"
+#include "lf/render/collect/frame_rays.h"
 #include "lf/render/state/run_inputs.h"
 #include "lf/selection/lens_weights/lens_coverage.h"
 
 namespace lf {
 
-// Samples of a frame, measured for --stop-when or --require "samples>=N"
-// (render/collect/sample_rule.h). `asked` is N.
+// Samples of a frame, measured if FilmSettings::stop_when or `require` has a rule for them. `asked`
+// is N of "samples>=N".
 struct FrameSamples {
   uint32_t asked = 0;
   SampleShare measured;
 };
 
-// Noise of a frame, measured for --stop-when or --require "noise<=X" (render/collect/noise_rule.h).
+// Noise of a frame, measured if FilmSettings::stop_when or `require` has a rule for it
+// (render/collect/noise_rule.h).
 struct FrameNoise {
   double asked = 0;               // X of the rule, in linear radiance
   std::optional<double> reached;  // unset: cannot be measured (MeasureNoise() is infinite)
@@ -38,6 +38,7 @@ struct FrameNoise {
   uint64_t image_count = 0;       // number of LF images before `places` with rays in the frame
 };
 
+// Report of one finished frame.
 struct FrameReport {
   FrameId frame;
   FrameRays rays;
@@ -94,6 +95,7 @@ struct PackageReport {
   size_t selected_virtual_count = 0;  // largest number of virtual LF images that a pass reads
 };
 
+// Report of a whole render.
 struct RenderReport {
   std::string version;
   RunInputs inputs;  // RunStateOptions::rays and picture, which all frames have in common

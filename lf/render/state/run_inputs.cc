@@ -8,6 +8,7 @@
 
 #include "lf/light_field/model/value_hasher.h"
 #include "lf/render/settings/setting_table.h"
+#include "lf/selection/lens_weights/frame_weights.h"
 
 namespace lf {
 namespace {

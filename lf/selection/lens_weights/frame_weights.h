@@ -23,25 +23,15 @@
 #include "lf/camera/render_camera.h"
 #include "lf/core/geometry.h"
 #include "lf/core/parallel.h"
+#include "lf/selection/lens_weights/covered_region.h"
 #include "lf/selection/lens_weights/lens_coverage.h"
+#include "lf/selection/lens_weights/lens_weights.h"
 
 namespace lf {
-
-// How rays are weighted (doc/lens-integral.md).
-//   kNone  all rays have equal weights, as in the thesis
-//   kArea  by cells (CellShares()); needs a lens with an area: radius_w > 0
-//   kHat   by hats (HatShares()), for very narrow lenses and pinholes
-//   kAuto  by cells for wide lenses, by hats for narrow ones, and by a mixture in between
-//          (AutoHatShare())
-enum class LensWeights { kNone, kArea, kHat, kAuto };
 
 // The version of doc/lens-integral.md. A change of the code that gives rays other weights raises
 // it.
 inline constexpr int kLensWeightsVersion = 5;
-
-// Returns "none", "area", "hat" or "auto".
-const char* NameOf(LensWeights weights);
-std::optional<LensWeights> LensWeightsOf(std::string_view name);  // nullopt for any other word
 
 // AutoHatShare() returns the share of the hats in the weights of kAuto. It is 1 if the lens's
 // diameter is at most kHatsUpTo camera distances, and 0 from kCellsFrom camera distances on. In

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "lf/selection/lens_weights/covered_region.h"
 #include "lf/selection/lens_weights/point_grid.h"
 
 namespace lf {

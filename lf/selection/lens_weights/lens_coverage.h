@@ -7,9 +7,10 @@
 
 #include "lf/camera/aperture.h"
 #include "lf/core/geometry.h"
-#include "lf/selection/lens_weights/covered_region.h"
 
 namespace lf {
+
+class CoveredRegion;  // covered_region.h
 
 // The light at a point of the lens is unknown if the rays of all LF cameras meet the lens plane
 // farther than this from the point, in units of the distance between LF cameras.

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// The picture of a frame in memory, and how its file shows it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string_view>
+
+#include "lf/core/image.h"
+#include "lf/film/develop/colour_space.h"
+#include "lf/film/develop/display_view.h"
+
+namespace lf {
+
+// The picture of a frame. Its images have the width and the height of the frame; those that the
+// frame does not need are empty.
+struct DevelopedFrame {
+  Image<float> rgb;  // [height][width][3] linear light, sRGB primaries
+  // [height][width][3] number of rays; for a guarded plate, the number of recorded rays where there
+  // are some
+  Image<uint32_t> ray_count;
+  Image<float> coverage;  // [height][width] share of the channels with a ray of their own
+  // [height][width] in [0, 1]; empty for a plate without opacities, unless they were added
+  // (DevelopOptions::adds_opacity). rgb is multiplied by it.
+  Image<float> opacity = {};
+  // [height][width] number of LF images of equal weight that would give the same noise; empty
+  // without lens weights. Develop() leaves it empty: its callers, such as RenderFrame(), fill it.
+  // With lens weights, ray_count holds sums of weights.
+  Image<float> effective_count = {};
+  // [height][width] share of each element that was interpolated from rebinned rays; empty without
+  // completion
+  Image<float> interpolated = {};
+  // [height][width] share of each element that shows the rays of all LF images, virtual ones
+  // included, instead of those of recorded LF images alone; empty unless the plate is guarded
+  Image<float> densified = {};
+  // [height][width] depth, along the optical axis, at which each element is in focus. Develop()
+  // and RenderFrame() leave it empty; it is filled when a file with PictureOptions::has_focus_depth
+  // is written.
+  Image<float> focus_depth_w = {};
+};
+
+// The format of the file of a frame.
+enum class FrameFormat {
+  // "exr": an EXR file with the channels R G B count.R count.G count.B coverage. Opacities add A,
+  // by which R G B are multiplied; lens weights add the channel effective, rebinned rays add
+  // interpolated, guarded plates add densified, and focus depths add Z. Counts are 32-bit integers,
+  // Z is float, and all other channels are half.
+  kExrHalf,
+  kExrFloat,  // "exr-float": as "exr", with float instead of half
+  kPng8,      // "png": sRGB, 8 bit; opacities add alpha, by which RGB is not multiplied
+  kPng16,     // "png16": as "png", with 16 bit
+};
+
+// Parses "exr", "exr-float", "png" or "png16"; none for any other text.
+std::optional<FrameFormat> ParseFrameFormat(std::string_view name);
+const char* NameOf(FrameFormat format);
+bool IsExr(FrameFormat format);
+
+// How the file of a frame shows its picture.
+struct PictureOptions {
+  // Must be kRec709 for PNG files, whose values are sRGB.
+  ColourSpace colours = ColourSpace::kRec709;
+  // True: EXR files get the channel Z, the depth at which each element is in focus. Must be false
+  // for PNG files.
+  bool has_focus_depth = false;
+  // The view that gives the values of PNG files; null: the sRGB curve. Must be null for EXR files.
+  std::shared_ptr<const DisplayView> view = nullptr;
+  friend bool operator==(const PictureOptions&, const PictureOptions&) = default;
+};
+
+}  // namespace lf
