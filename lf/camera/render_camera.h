@@ -28,6 +28,10 @@ struct Hood {
   bool exists() const { return radius_w > 0; }
 };
 
+// A camera may be changed before its frame is rendered: by another aperture.radius_w, or by another
+// focus distance:
+//   camera.focus_distance_w = 2;
+//   camera.focus_plane = FocusPlane(camera.pinhole, 2, camera.focus_tilt);
 struct RenderCamera {
   PinholeCamera pinhole;  // projects points through the lens centre to elements of the sensor plate
   Aperture aperture;      // in the plane through the lens centre normal to the optical axis

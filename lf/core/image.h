@@ -12,7 +12,8 @@
 
 namespace lf {
 
-// A view does not own its pixels. A view may be copied, but must not outlive the pixels.
+// Shows the pixels of an Image, or of any other memory, but does not own them. A view may be
+// copied, but must not outlive the pixels.
 template <class T>
 struct ImageView {
   T* data = nullptr;
@@ -36,6 +37,7 @@ struct ImageView {
   }
 };
 
+// Owns its pixels. The pixel at x = 0, y = 0 is the upper left one.
 template <class T>
 class Image {
  public:

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Errors as values: bad input and failing machines (doc/style.md, "Errors"). LF_CHECK catches our
 // own bugs. Nothing in the library throws, except std::bad_alloc if memory runs out.
+//
+//   const lf::Result<lf::LightField> light_field = lf::Open("capture");
+//   if (!light_field) return lf::Report(light_field.error());
+//   std::printf("%zu LF images\n", light_field->size());
 #pragma once
 
 #include <optional>

@@ -37,7 +37,7 @@ struct ChannelGains {
 // One LF camera. An LfCamera takes only 120 bytes, because a light field may have a million of
 // them.
 struct LfCamera {
-  RigidTransform cam_from_world;
+  RigidTransform cam_from_world;  // camera axes: x right, y down, z forward
   uint32_t intrinsics_index = 0;  // index into LightField::intrinsics
   ChannelGains gain;              // factors of the radiance (lf_gain)
   // ApplyBrackets() sets `brighter` and `masks_clipped` (light_field/model/brackets.h).
@@ -51,6 +51,8 @@ struct LfCamera {
 };
 static_assert(sizeof(LfCamera) == 120);
 
+// lf::Open() makes one of a calibration. A program may also make one of `cameras`, `intrinsics`,
+// `image_names` and `folder`; the other members have defaults.
 struct LightField {
   std::vector<LfCamera> cameras;       // indexed by LfImageId, like the two lists of names below
   std::vector<Intrinsics> intrinsics;  // each distinct set of intrinsics once
