@@ -22,9 +22,16 @@
 // api/film.h opens light fields and films, and renders films into folders; api/frame.h renders
 // frames in memory. What a film can be told is in render/settings/film_settings.h, what a light
 // field holds in light_field/model/light_field.h, what a path holds in camera/path/camera_path.h,
-// and what a frame holds in film/develop/develop.h. All lengths are in world units of the light
-// field, unless a name ends in another unit (doc/conventions.md). Errors are values
-// (core/result.h).
+// and what a frame holds in film/develop/picture.h. Errors are values (core/result.h); no function
+// throws, except std::bad_alloc if memory runs out.
+//
+// Names that end in _w are lengths in world units of the light field, _px in pixels or elements of
+// a frame, _rad and _deg angles, _s seconds, _m and _mm metres and millimetres
+// (doc/conventions.md). Pictures are [height][width][channels], with the uppermost row first.
+//
+// This header includes all headers that the library promises (public_headers.txt lists them). Their
+// names, and the names of types that they use, stay the same in all versions 0.N.x with the same N.
+// Headers below lf/detail/ are no part of the promise: programs must not include them.
 #pragma once
 
 #include "lf/api/film.h"

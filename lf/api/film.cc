@@ -4,21 +4,14 @@
 #include <cstdio>
 #include <utility>
 
+#include "lf/core/parallel.h"
 #include "lf/core/version.h"
+#include "lf/import/paths/focal_surface_file.h"
+#include "lf/import/paths/open_path.h"
+#include "lf/render/package/package.h"
+#include "lf/render/pipeline/render.h"
 
 namespace lf {
-namespace {
-
-RenderOptions OptionsOf(const Film& film, std::vector<FrameId> frames) {
-  RenderOptions options;
-  options.frames = std::move(frames);
-  options.film = film.settings;
-  options.work = film.work;
-  return options;
-}
-
-}  // namespace
-
 int Report(const Error& error) {
   std::fprintf(stderr, "error: %s\n", error.message.c_str());
   return static_cast<int>(error.kind);
@@ -44,20 +37,14 @@ Result<Film> OpenFilm(LightField light_field, const std::filesystem::path& path,
   return film;
 }
 
-Result<std::unique_ptr<FilmRenderer>> OpenRenderer(const Film& film, std::vector<FrameId> frames,
-                                                   ThreadPool& pool) {
-  const RenderOptions options = OptionsOf(film, frames);
-  LF_ASSIGN_OR_RETURN(Package package, PackageOfFilm(film.light_field, film.path, options, pool));
-  return FilmRenderer::Open(std::move(package), options.film, options.work, std::move(frames),
-                            pool);
-}
-
 Result<RenderReport> RenderFilm(const Film& film, FolderOptions folder, std::vector<FrameId> frames,
                                 RenderSignals* signals,
                                 const std::function<void(const RenderProgress&)>& progress) {
-  RenderOptions options = OptionsOf(film, std::move(frames));
-  options.signals = signals;
-  options.folder = std::move(folder);
+  RenderOptions options = {.frames = std::move(frames),
+                           .film = film.settings,
+                           .work = film.work,
+                           .folder = std::move(folder),
+                           .signals = signals};
   options.folder.version = Version();
   options.folder.inputs.insert(options.folder.inputs.end(), film.files.begin(), film.files.end());
   options.folder.inputs.push_back(film.light_field.source);

@@ -5,19 +5,17 @@
 
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <vector>
 
 #include "lf/camera/path/camera_path.h"
 #include "lf/core/ids.h"
-#include "lf/core/parallel.h"
 #include "lf/core/result.h"
 #include "lf/import/formats/open_light_field.h"
-#include "lf/import/paths/open_path.h"
+#include "lf/import/paths/path_options.h"
 #include "lf/light_field/model/light_field.h"
-#include "lf/render/pipeline/film_renderer.h"
-#include "lf/render/pipeline/render.h"
+#include "lf/render/pipeline/folder_options.h"
 #include "lf/render/settings/film_settings.h"
+#include "lf/render/state/report.h"
 
 namespace lf {
 
@@ -25,18 +23,20 @@ namespace lf {
 int Report(const Error& error);
 
 // Opens any LIGHTFIELD: a calibration, a folder that holds one, or a packed store (doc/inputs.md).
+// The pixels are read later, by the functions that render.
+//   options  what the calibration does not state, such as the folder of the images
 // Errors are those of OpenLightField(), which this function calls.
 Result<LightField> Open(const std::filesystem::path& light_field, const OpenOptions& options = {});
 
 // A light field, a camera path, and what is said of the frames. All members may be changed before a
 // frame is rendered.
 struct Film {
-  LightField light_field;
-  CameraPath path;  // with the focal surfaces and transmissions of its lenses
-  FilmSettings settings;
-  WorkSettings work;
+  LightField light_field = {};
+  CameraPath path = {};        // with the focal surfaces and transmissions of its lenses
+  FilmSettings settings = {};  // what the frames are made of
+  WorkSettings work = {};      // memory, threads and other things that change no bit
   // The file of the path and those that it names, which no output may replace.
-  std::vector<std::filesystem::path> files;
+  std::vector<std::filesystem::path> files = {};
 };
 
 // Opens any PATH for a light field: our own YAML, that of another program, or the cameras of a
@@ -44,25 +44,26 @@ struct Film {
 // that the path names are read, for all frames.
 //   options  values that replace those of the file, or for which it has no place; those that
 //            describe the light field are set by this function
-// Errors are those of OpenPath() and AddFocalSurfaces().
+// kInput: a file cannot be read, or is damaged; a camera is of another type than perspective; the
+// file states another unit_m than the light field has. kUsage: an option that the form of the file
+// does not allow. The message names the file, the line or the key, and what was expected.
 Result<Film> OpenFilm(LightField light_field, const std::filesystem::path& path,
                       PathOptions options = {});
 
-// Makes a renderer of some frames of the film, for programs that look at unfinished frames
-// (render/pipeline/film_renderer.h says how). The film is copied; the pool must outlive the
-// renderer.
-//   frames  ascending; empty: all frames of the path, which must fit in the memory together
-// Errors are those of PackageOfFilm() and FilmRenderer::Open().
-Result<std::unique_ptr<FilmRenderer>> OpenRenderer(const Film& film, std::vector<FrameId> frames,
-                                                   ThreadPool& pool);
-
 // Renders the film into folder.output_folder, as `lfrenderer LIGHTFIELD PATH -o FOLDER` does:
-// frame_0001.exr ..., contact_sheet.png and report.json. Render() states errors, and what is kept
-// if the work is interrupted.
+// frame_0001.exr ..., contact_sheet.png, report.json, and a video if one is asked for. A file
+// appears under its final name only when it is whole. A kill loses at most the work since the last
+// checkpoint (FolderOptions::dump_every_s).
 //   folder    {.output_folder = "frames"}; its `inputs` and `version` are completed
-//   frames    some frames of the path, ascending; empty: all
+//   frames    some frames of the path, ascending, such as {FrameId{1}, FrameId{5}}; empty: all
 //   signals   requests to the render while it runs; may be null
-//   progress  called now and then; may be empty
+//   progress  called now and then, by the calling thread; may be empty
+// kUsage: settings contradict each other; an output would replace a file that the render reads; the
+// folder has an unfinished render, and neither `resume` nor `overwrite` is set, or it was begun
+// with other inputs. kInput: no LF image contributes to any frame; all LF images are broken, or one
+// is and WorkSettings::strict is set; a damaged state. kOutput: the disk or the memory does not
+// suffice, or ffmpeg is missing or failed. kInterrupted: RenderSignals::stop was set; finished
+// frames are kept, and so are the rays of the others, which `resume` continues from.
 Result<RenderReport> RenderFilm(const Film& film, FolderOptions folder,
                                 std::vector<FrameId> frames = {}, RenderSignals* signals = nullptr,
                                 const std::function<void(const RenderProgress&)>& progress = {});

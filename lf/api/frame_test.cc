@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 #include "lf/render/collect/test_noise_field.h"
 
@@ -34,6 +35,17 @@ TEST(Face, NumbersOfFramesAreChecked) {
   }
 }
 
+TEST(Face, FramesThatAreRenderedTogetherAreInOrder) {
+  for (const auto& frames : {std::vector{FrameId{2}, FrameId{1}}, {FrameId{1}, FrameId{1}}}) {
+    const Result<FrameRenderer> renderer = FrameRenderer::Open(FilmWithoutImages(), frames);
+    ASSERT_FALSE(renderer);
+    ExpectError(renderer.error(), ErrorKind::kUsage, "ascending");
+  }
+  const Result<FrameRenderer> renderer = FrameRenderer::Open(FilmWithoutImages(), {FrameId{4}});
+  ASSERT_FALSE(renderer);
+  ExpectError(renderer.error(), ErrorKind::kUsage, "expected a number from 1 to 3");
+}
+
 TEST(Face, FramesWithoutLfImagesAreErrors) {
   const Result<Frame> frame = RenderFrame(FilmWithoutImages(), 1);
   ASSERT_FALSE(frame);
@@ -51,6 +63,7 @@ TEST(Face, NamesOfFramesTellTheirFormat) {
   ExpectError(SaveFrame(Frame(), "frame.jpg").error(), ErrorKind::kUsage, ".exr or .png");
   ExpectError(SaveFrame(Frame(), "frame.png", FrameFormat::kExrHalf).error(), ErrorKind::kUsage,
               "exr");
+  ExpectError(SaveFrame(Frame(), "frame.exr").error(), ErrorKind::kUsage, "has no notes");
 }
 
 }  // namespace
