@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Defines what `cmake --install` installs: the library as one archive with its public headers, for CMake's
+# Defines what `cmake --install` installs: the library as one archive with the headers that it promises, for CMake's
 # find_package(lfrendertools) and for pkg-config; the programs; their documentation.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -12,16 +12,27 @@ set_target_properties(lf_installed PROPERTIES OUTPUT_NAME lfrendertools EXPORT_N
 target_compile_features(lf_installed PUBLIC cxx_std_20)
 # Inline functions of the headers must compute the same bits (cmake/LfFolder.cmake).
 target_compile_options(lf_installed INTERFACE -ffp-contract=off)
-get_property(headers GLOBAL PROPERTY LF_PUBLIC_HEADERS)
-target_sources(lf_installed PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${headers})
+target_include_directories(lf_installed INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 # An archive does not contain the libraries that it needs, so its user links them. Those without a namespace are linked by
 # name, so that their user needs no CMake packages of them.
 target_link_libraries(lf_installed PUBLIC Eigen3::Eigen fmt::fmt TBB::tbb Threads::Threads yaml-cpp
                                           hwy::hwy OpenEXR::OpenEXR OpenEXR::OpenEXRCore png tiff z raw_r jpeg lcms2
                                           simdjson zstd xxhash sqlite3 icuuc ${LF_OCIO_NAME})
 install(TARGETS lf_installed EXPORT lfrendertoolsTargets
-        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-        FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+
+# The headers are made with the archive, because some of them have other places than in the source.
+set(LF_INSTALLED_HEADERS ${PROJECT_BINARY_DIR}/installed_headers)
+set(script ${PROJECT_SOURCE_DIR}/cmake/installed_headers.cmake)
+file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/lf/*.h)
+add_custom_command(OUTPUT ${LF_INSTALLED_HEADERS}.made
+                   COMMAND ${CMAKE_COMMAND} -D SOURCE=${PROJECT_SOURCE_DIR} -D OUT=${LF_INSTALLED_HEADERS} -P ${script}
+                   COMMAND ${CMAKE_COMMAND} -E touch ${LF_INSTALLED_HEADERS}.made
+                   DEPENDS ${headers} ${PROJECT_SOURCE_DIR}/lf/public_headers.txt ${script}
+                   COMMENT "Making the headers of the library" VERBATIM)
+add_custom_target(lf_installed_headers DEPENDS ${LF_INSTALLED_HEADERS}.made)
+add_dependencies(lf_installed lf_installed_headers)
+install(DIRECTORY ${LF_INSTALLED_HEADERS}/lf DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/lfrendertools)
 install(EXPORT lfrendertoolsTargets NAMESPACE lfrendertools:: DESTINATION ${package_folder})

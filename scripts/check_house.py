@@ -15,8 +15,8 @@ usage: check_house.py REPOSITORY CHECK
            doc_tables.py makes is what the sources say
   mutants  every mistake of scripts/mutants.toml can be planted: its old text is in its file exactly once, and its
            regular expression matches names of tests
-  headers  a header says "Internal to" if its folder lists it as INTERNAL, and only then; installed headers
-           include no internal ones (header_rules.py)
+  headers  the headers that the library promises exist and include few others; a header that says "Internal to" is
+           included only there (header_rules.py)
   comments comments begin and end as doc/style.md requires (comment_rules.py)
   version  VERSION, CHANGELOG.md, CITATION.cff and the add-on of Blender state one version (version_rules.py)
   commits  the commits that tables were made from are ancestors of HEAD
@@ -179,7 +179,7 @@ def check_comments(root, files):
 
 
 def check_headers(root, files):
-    return header_rules.check_headers(root, text_lines)
+    return header_rules.check_headers(root, files, text_lines)
 
 
 def check_version(root, files):

@@ -171,19 +171,34 @@ class PlantedFaults(unittest.TestCase):
         self.plant("lf/film/develop/CMakeLists.txt", "lf_folder(film/develop DEPENDS film/plate)\n")
         self.expect("check_includes.py", faults=[])
 
-    def test_internal_headers_are_listed_and_say_so(self):
-        self.plant("lf/core/CMakeLists.txt", "lf_folder(core\n  INTERNAL fine.h silent.h gone.h test_a.h\n  DEPENDS)\n")
-        self.plant("lf/core/fine.h", "// It sorts. Internal\n// to core.\n#pragma once\n")
-        self.plant("lf/core/silent.h", "// It sorts.\n#pragma once\n// Internal to core.\n")
-        self.plant("lf/core/said.h", "// It sorts. Internal to this folder.\n#pragma once\n")
-        self.plant("lf/core/test_a.h", "// For tests.\n#pragma once\n#include \"lf/core/fine.h\"\n")
+    def test_internal_headers_stay_in_their_folders(self):
+        self.plant("lf/core/CMakeLists.txt", "lf_folder(core DEPENDS)\n")
+        self.plant("lf/core/fine.h", "// It sorts. Internal\n// to this folder.\n#pragma once\n")
+        self.plant("lf/core/shared.h", "// It sorts. Internal to core and film/plate.\n#pragma once\n")
+        self.plant("lf/core/open.h", "// It sorts.\n#pragma once\n// Internal to core.\n")
+        self.plant("lf/core/a.cc", '#include "lf/core/fine.h"\n')
         self.plant("lf/film/plate/CMakeLists.txt", "lf_folder(film/plate DEPENDS core)\n")
-        self.plant("lf/film/plate/public.h", '#pragma once\n#include "lf/core/fine.h"\n#include "lf/core/other.h"\n')
+        self.plant("lf/film/plate/a.cc", '#include "lf/core/shared.h"\n#include "lf/core/open.h"\n')
+        self.plant("lf/film/plate/b.h", '#pragma once\n#include "lf/core/fine.h"\n')
+        self.plant("tools/a.cc", '#include "lf/core/shared.h"\n')
+        self.expect("check_house.py", "headers", faults=["lf/film/plate/b.h:2: lf/core/fine.h is internal to core",
+                                                         "tools/a.cc:1: lf/core/shared.h is internal to core, film"])
+
+    def test_promised_headers_include_only_what_other_programs_may_get(self):
+        self.plant("lf/core/CMakeLists.txt", "lf_folder(core DEPENDS)\n")
+        self.plant("lf/public_headers.txt", "# A list.\nlf/lfrendertools.h  Begin\nlf/core/a.h  A\nlf/core/b.h  B\n")
+        self.plant("lf/lfrendertools.h", '#include "lf/core/a.h"\n')
+        self.plant("lf/core/a.h", '#include "lf/core/c.h"\n')
+        self.plant("lf/core/c.h", "// Internal to core.\n")
         self.expect("check_house.py", "headers", faults=[
-            "lf/core/silent.h: INTERNAL lists it, but its first", "lf/core/said.h: its first comment says",
-            "lf/core/test_a.h: INTERNAL lists it, which is needless",
-            "lf/core/gone.h: INTERNAL lists it, but it does not",
-            "lf/film/plate/public.h:2: a header that is installed includes lf/core/fine.h"])
+            "lf/public_headers.txt: lf/core/b.h does not exist", "lf/lfrendertools.h: does not include lf/core/b.h",
+            "lf/core/c.h: promised headers (lf/public_headers.txt) include it, but it is internal"])
+        many = [f"lf/core/many{i}.h" for i in range(40)]
+        for name in many:
+            self.plant(name, "// A.\n")
+        self.plant("lf/core/a.h", "".join(f'#include "{name}"\n' for name in ["lf/core/b.h", *many]))
+        self.plant("lf/core/b.h", "// B.\n")
+        self.expect("check_house.py", "headers", faults=["lf/public_headers.txt: promised headers include 40 other"])
 
     RENDERS = ["lfrenderer f p.yaml -o out --mode collect --estimator nearest --lens-weights none",
                "lfrenderer f p.yaml -o out"]

@@ -6,6 +6,7 @@ usage: install_test.py CMAKE BUILD_FOLDER SOURCE_FOLDER
 """
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -17,6 +18,7 @@ import numpy as np
 import small_field
 
 CMAKE = BUILD = SOURCE = None
+INCLUDE = re.compile(r'^#include "(lf/[^"]+)"', re.M)
 
 
 class InstallTest(unittest.TestCase):
@@ -79,22 +81,51 @@ class InstallTest(unittest.TestCase):
             self.assertEqual(refused.returncode, 2)
             self.assertIn("frame.jpg: expected a name that ends in .exr or .png", refused.stderr)
 
+    def steps(self, program):
+        """Frames that are looked at while they grow have in the end the bytes of the frames of lfrenderer."""
+        with tempfile.TemporaryDirectory() as temporary:
+            work = pathlib.Path(temporary)
+            field = small_field.write_field(work / "field")
+            path = small_field.write_path(work, frames=2)
+            steps = [line.split() for line in self.run_tool(program, field, path, work).splitlines()]
+            self.assertEqual(steps[-1][0], "1")
+            counts = [int(count) for _, count in steps]
+            self.assertEqual(counts, sorted(counts))
+            self.run_tool(self.prefix / "bin" / "lfrenderer", field, path, "-o", work / "frames")
+            for number in 1, 2:
+                self.assertEqual((work / f"{number}.exr").read_bytes(),
+                                 (work / "frames" / f"frame_000{number}.exr").read_bytes())
+
     def test_a_foreign_project_by_cmake(self):
         build = self.folder / "by-cmake"
         self.run_tool(CMAKE, "-G", "Ninja", "-S", SOURCE / "tests" / "foreign", "-B", build,
-                      f"-DCMAKE_PREFIX_PATH={self.prefix}",
-                      f"-DLF_INCLUDE={self.prefix / 'include'}")
+                      f"-DCMAKE_PREFIX_PATH={self.prefix}")
         self.run_tool(CMAKE, "--build", build)
         self.film(build / "film")
         self.frame(build / "frame")
+        self.steps(build / "steps")
+
+    def flags(self, *which):
+        environment = {**os.environ, "PKG_CONFIG_PATH": str(self.library / "pkgconfig")}
+        return self.run_tool("pkg-config", *which, "lfrendertools", env=environment).split()
 
     def test_a_foreign_program_by_pkg_config(self):
-        environment = {**os.environ, "PKG_CONFIG_PATH": str(self.library / "pkgconfig")}
-        flags = self.run_tool("pkg-config", "--cflags", "--libs", "lfrendertools", env=environment)
         program = self.folder / "film-by-pkg-config"
-        self.run_tool("c++", SOURCE / "tests" / "foreign" / "film.cc", "-o", program,
-                      *flags.split())
+        self.run_tool("c++", SOURCE / "tests" / "foreign" / "film.cc", "-o", program, *self.flags("--cflags", "--libs"))
         self.film(program)
+
+    def test_the_program_in_the_first_header_prints_the_light_of_a_frame(self):
+        header = (self.prefix / "include/lf/lfrendertools.h").read_text()
+        lines = [line.removeprefix("//   ") for line in header.splitlines() if line.startswith("//   ") or line == "//"]
+        source = self.folder / "light.cc"
+        source.write_text("\n".join("" if line == "//" else line for line in lines) + "\n")
+        program = self.folder / "light"
+        self.run_tool("c++", source, "-o", program, *self.flags("--cflags", "--libs"))
+        with tempfile.TemporaryDirectory() as temporary:
+            work = pathlib.Path(temporary)
+            field = small_field.write_field(work / "field")
+            light = float(self.run_tool(program, field, small_field.write_path(work, frames=1)))
+        self.assertGreater(light, 0)
 
     def test_programs_and_documents_are_installed(self):
         for name in ("lfrenderer", "lfexample", "lfsynth", "lfimport", "lfcammvminfo", "lfpath",
@@ -119,12 +150,43 @@ class InstallTest(unittest.TestCase):
         page = self.run_tool("man", "-l", share / "man/man1/lfrenderer.1")
         self.assertIn("EXIT STATUS", page)
 
-    def test_internal_headers_stay_behind(self):
-        headers = sorted(p.name for p in (self.prefix / "include").rglob("*.h"))
-        self.assertIn("render.h", headers)
-        self.assertTrue((self.prefix / "include" / "lf" / "lfrendertools.h").exists())
-        self.assertNotIn("plan_on_arcs.h", headers)
-        self.assertFalse([name for name in headers if name.startswith("test")])
+    def installed_headers(self):
+        """Returns {"lf/api/film.h": [headers of the library that it includes], ...}."""
+        include = self.prefix / "include"
+        return {path.relative_to(include).as_posix(): INCLUDE.findall(path.read_text())
+                for path in include.rglob("*") if path.is_file()}
+
+    def test_the_promised_headers_are_installed_and_what_they_include(self):
+        promised = [line.split()[0] for line in (SOURCE / "lf/public_headers.txt").read_text().splitlines()
+                    if line.startswith("lf/")]
+        headers = self.installed_headers()
+        self.assertEqual(sorted(name for name in headers if not name.startswith("lf/detail/")), sorted(promised))
+        reached = ["lf/lfrendertools.h"]
+        for name in reached:
+            reached += [each for each in headers[name] if each not in reached]
+        self.assertEqual(sorted(reached), sorted(headers))
+        self.assertLess(len(headers), 50)
+        for name in headers:  # nothing but #include lines is changed
+            source = SOURCE / name.replace("lf/detail/", "lf/")
+            self.assertEqual((self.prefix / "include" / name).read_text().replace('"lf/detail/', '"lf/'),
+                             source.read_text())
+
+    def compile_alone(self, header):
+        source = self.folder / "alone.cc"
+        source.write_text(f"#include <{header}>\n")
+        return subprocess.run(["c++", "-std=c++20", "-fsyntax-only", source, *self.flags("--cflags")],
+                              capture_output=True, text=True)
+
+    def test_each_promised_header_compiles_alone(self):
+        for header in self.installed_headers():
+            if not header.startswith("lf/detail/"):
+                with self.subTest(header):
+                    self.assertEqual(self.compile_alone(header).stderr, "")
+
+    def test_programs_cannot_include_what_is_not_promised(self):
+        for header in "lf/core/child_process.h", "lf/core/ids.h", "lf/render/pipeline/film_renderer.h":
+            self.assertTrue((SOURCE / header).exists())
+            self.assertIn(f"{header}: No such file", self.compile_alone(header).stderr)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: Apache-2.0
+# Makes the folder of the headers that are installed: those of lf/public_headers.txt at their paths, and all that they
+# include, directly or through others, below lf/detail/. #include lines follow; nothing else of a header changes.
+#
+# usage: cmake -D SOURCE=REPOSITORY -D OUT=FOLDER -P installed_headers.cmake    (FOLDER is made anew)
+cmake_minimum_required(VERSION 3.25)
+file(STRINGS ${SOURCE}/lf/public_headers.txt public REGEX "^lf/")
+list(TRANSFORM public REPLACE " .*" "")
+set(installed ${public})
+set(waiting ${public})
+while(waiting)
+  list(POP_FRONT waiting header)
+  file(STRINGS ${SOURCE}/${header} included REGEX "^#include \"lf/")
+  list(TRANSFORM included REPLACE "#include \"(.*)\".*" "\\1")
+  list(REMOVE_ITEM included ${installed})
+  list(APPEND installed ${included})
+  list(APPEND waiting ${included})
+endwhile()
+
+file(REMOVE_RECURSE ${OUT})
+foreach(header IN LISTS installed)
+  file(READ ${SOURCE}/${header} text)
+  foreach(other IN LISTS installed)
+    if(NOT other IN_LIST public)
+      string(REGEX REPLACE "^lf/" "lf/detail/" place ${other})
+      string(REPLACE "#include \"${other}\"" "#include \"${place}\"" text "${text}")
+    endif()
+  endforeach()
+  if(NOT header IN_LIST public)
+    string(REGEX REPLACE "^lf/" "lf/detail/" header ${header})
+  endif()
+  file(WRITE ${OUT}/${header} "${text}")
+endforeach()
