@@ -87,8 +87,23 @@ class Site(unittest.TestCase):
         index = (self.site / "searchindex.js").read_text()
         for word in ("pentagon", "imagedist", "focus_stack", "colmap"):
             self.assertIn(word, index)
-        for name in ("index", "tutorial", "gallery", "python/api", "cpp/camera", "formats/path"):
+        for name in ("index", "tutorial", "gallery", "python/api", "cpp/index", "formats/path"):
             self.assertTrue((self.site / f"{name}.html").is_file(), name)
+
+    def test_one_page_has_what_the_library_promises_in_the_order_of_reading(self):
+        promised = [line.split(maxsplit=1) for line in (SOURCE / "lf/public_headers.txt").read_text().splitlines()
+                    if line.startswith("lf/")]
+        page = (self.site / "cpp/index.html").read_text()
+        places = [page.find(f"<h2>{title}<") for _, title in promised]
+        self.assertNotIn(-1, places)
+        self.assertEqual(places, sorted(places))
+        self.assertLess(page.find("lf::RenderFrame"), places[1])  # in the first example
+        anchors = Page(page).anchors
+        self.assertLessEqual({"openfilm", "renderframe", "framerenderer", "filmsettings", "rendercamera"}, anchors)
+        for name in "LensWeights", "PixelFilter", "ImageOrder", "StopRule", "Aperture":  # of headers below lf/detail/
+            self.assertIn(f"<code>{name}</code>", page)
+        self.assertNotIn(">private<", page)
+        self.assertEqual(sorted(path.name for path in (self.site / "cpp").iterdir()), ["index.html", "rooms.html"])
 
     def test_schemas_are_files_that_editors_read(self):
         for path in (SOURCE / "schemas").iterdir():
