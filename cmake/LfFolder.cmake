@@ -57,7 +57,7 @@ include(LfPrecompiled)
 add_library(lfrendertools INTERFACE)
 add_library(lfrendertools::lfrendertools ALIAS lfrendertools)
 
-# lf_folder(path [WORDS] SOURCES ... [ALONE ...] [INTERNAL ...] DEPENDS ... [LIBS ...] [PUBLIC_LIBS ...] [TESTS ...]
+# lf_folder(path [WORDS] SOURCES ... [ALONE ...] DEPENDS ... [LIBS ...] [PUBLIC_LIBS ...] [TESTS ...]
 #           [TEST_LIBS ...] [FUZZ ...] [BENCH ...])
 #
 # The folder lf/<path> as a static library: lf_camera for camera, lf_camera_path for camera/path.
@@ -65,7 +65,6 @@ add_library(lfrendertools::lfrendertools ALIAS lfrendertools)
 #   SOURCES      the .cc files
 #   ALONE        .cc files among SOURCES that are not compiled together with others: kernels, which include themselves
 #                once for each instruction set, and files that share names with others on purpose
-#   INTERNAL     headers that are not installed; headers whose names begin with test_ or testing_ never are
 #   DEPENDS      the folders it may include, as paths (doc/layout.md; checked by scripts/check_includes.py)
 #   LIBS         third-party targets its .cc files need;  PUBLIC_LIBS: its headers too
 #   TESTS        x_test.cc files: one program per folder, each of its suites a test of ctest, named
@@ -74,7 +73,7 @@ add_library(lfrendertools::lfrendertools ALIAS lfrendertools)
 #                fuzz/corpus/<x>/ as a test
 #   BENCH        x_bench.cc files, built with LF_BENCH
 function(lf_folder path)
-  cmake_parse_arguments(F "WORDS" "" "SOURCES;ALONE;INTERNAL;DEPENDS;LIBS;PUBLIC_LIBS;TESTS;TEST_LIBS;FUZZ;BENCH"
+  cmake_parse_arguments(F "WORDS" "" "SOURCES;ALONE;DEPENDS;LIBS;PUBLIC_LIBS;TESTS;TEST_LIBS;FUZZ;BENCH"
                         ${ARGN})
   if(F_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "lf_folder(${path}): unknown words: ${F_UNPARSED_ARGUMENTS}")
@@ -103,7 +102,6 @@ function(lf_folder path)
     add_library(${target} INTERFACE)
     target_link_libraries(${target} INTERFACE lf_options Eigen3::Eigen ${F_DEPENDS})
   endif()
-  lf_public_headers(${F_INTERNAL})
   add_library(lf::${name} ALIAS ${target})
   target_link_libraries(lfrendertools INTERFACE ${target})
 
@@ -122,21 +120,6 @@ function(lf_folder path)
     add_executable(${target}_bench ${F_BENCH})
     target_link_libraries(${target}_bench PRIVATE ${target} benchmark::benchmark_main)
   endif()
-endfunction()
-
-# lf_public_headers(internal...): the headers of this folder are installed, except for the internal ones and those of
-# tests.
-function(lf_public_headers)
-  file(GLOB headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.h)
-  foreach(name ${ARGN})
-    set(header ${CMAKE_CURRENT_SOURCE_DIR}/${name})
-    if(NOT header IN_LIST headers)
-      message(FATAL_ERROR "INTERNAL names ${header}, which does not exist")
-    endif()
-    list(REMOVE_ITEM headers ${header})
-  endforeach()
-  list(FILTER headers EXCLUDE REGEX "/test(ing)?_[^/]*$")
-  set_property(GLOBAL APPEND PROPERTY LF_PUBLIC_HEADERS ${headers})
 endfunction()
 
 # x_fuzz.cc -> program x_fuzz, and a test that replays fuzz/corpus/x/.

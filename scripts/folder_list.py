@@ -3,8 +3,7 @@
 import pathlib
 import re
 
-KEYWORDS = {"WORDS", "SOURCES", "ALONE", "INTERNAL", "DEPENDS", "LIBS", "PUBLIC_LIBS", "TESTS", "TEST_LIBS", "FUZZ",
-            "BENCH"}
+KEYWORDS = {"WORDS", "SOURCES", "ALONE", "DEPENDS", "LIBS", "PUBLIC_LIBS", "TESTS", "TEST_LIBS", "FUZZ", "BENCH"}
 
 
 def read_call(cmake: str) -> dict:
