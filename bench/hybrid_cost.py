@@ -61,7 +61,7 @@ def measure(build, field, folder, name, size, runs, frames_share):
             row["cpu_s"].append(round(usage.ru_utime + usage.ru_stime, 3))
             row["report"] = {key: report.get(key) for key in
                              ("lf_images_selected", "rays_accepted", "collect_cpu_s", "rebinning")}
-            row["interpolated"] = [f.get("interpolated_share", 0) for f in report["frames"]]
+            row["interpolated"] = max(f.get("interpolated_share", 0) for f in report["frames"])
     for row in rows:
         row["path"], row["options"] = row["path"].name, " ".join(row["options"])
     return rows
@@ -84,7 +84,7 @@ def table(record):
             f"| {name} | {mode} | {row['report']['lf_images_selected']} | {cpu:.2f} | "
             f"{ratio} | {looked_at / 1e6:.1f} M | "
             + (f"{1e9 * rebinning['cpu_s'] / looked_at:.1f}" if looked_at else "-")
-            + f" | {rebinning['cells'] / 1e6:.2f} M | {100 * max(row['interpolated']):.0f} % |")
+            + f" | {rebinning['cells'] / 1e6:.2f} M | {100 * row['interpolated']:.0f} % |")
     lines += ["", "Options of each mode:", ""]
     lines += [f"- {mode}: `{' '.join(options)}`" for mode, (_, options) in MODES.items()]
     return lines

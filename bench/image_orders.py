@@ -48,7 +48,10 @@ def measure(build, folder, density, size):
         out = folder / f"{order}-{weights}"
         results.call([build / "bin/lfpreprocessor", field, path, "-o", out, "-q", "--order", order,
                       "--frames-per-package", 1, "--allow-missing", "100%", *WEIGHTS[weights]])
-        rows.append({"order": order, "weights": weights, "rays": filled_after_a_tenth(sorted(out.glob("*.lfp")))})
+        rays = filled_after_a_tenth(sorted(out.glob("*.lfp")))
+        rows.append({"order": order, "weights": weights, "frames": len(rays), "empty": rays.count(0),
+                     "least": min(rays), "median": statistics.median(rays), "most": max(rays),
+                     "deviation": statistics.pstdev(rays) / statistics.mean(rays)})
     return rows
 
 
@@ -56,10 +59,9 @@ def table(record):
     lines = ["| order | lens weights | frames without a ray | rays of a frame: least, median, most, M | "
              "standard deviation / mean |", "|" + " --- |" * 5]
     for row in record["rows"]:
-        rays = row["rays"]
-        lines.append(f"| {row['order']} | {row['weights']} | {rays.count(0)} of {len(rays)} | {min(rays) / 1e6:.2f}, "
-                     f"{statistics.median(rays) / 1e6:.2f}, {max(rays) / 1e6:.2f} | "
-                     f"{statistics.pstdev(rays) / statistics.mean(rays):.2f} |")
+        lines.append(f"| {row['order']} | {row['weights']} | {row['empty']} of {row['frames']} | "
+                     f"{row['least'] / 1e6:.2f}, {row['median'] / 1e6:.2f}, {row['most'] / 1e6:.2f} | "
+                     f"{row['deviation']:.2f} |")
     return lines
 
 

@@ -21,6 +21,9 @@ bench/results/NAME.json, has
     defaults_hash   hash of these lines
     and what the script adds: its rows
 
+Each row, command and default has a line of its own, so that a table made again changes the lines of what changed.
+Measured numbers are rounded to DIGITS.
+
 NAME.md beside it is the text between the markers. scripts/check_house.py . tables compares all of them.
 """
 import datetime
@@ -39,6 +42,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 END = "<!-- end of table -->"
 # Figures depend on these: compiled sources, and the scripts that measure.
 SOURCES = ("../lf", "../tools", "../cmake", "../CMakeLists.txt", "*.cc", "*.h", "*.py", "../scripts/*.py")
+DIGITS = 7  # tables show fewer: a table made of a rounded record has the same text
+LINE = 100  # a list or object of at most so many characters is written as one line
 
 _commands = []  # commands of this run, each once
 _programs = {}  # name -> path
@@ -132,11 +137,43 @@ def timed(words, watch=None, folder=None, codes=(0,)):
         return json.load(open(result.name)) | {"stdout": done.stdout}
 
 
+def rounded(value):
+    """Returns a value whose floating-point numbers have DIGITS significant digits. Integers are not rounded."""
+    if isinstance(value, float):
+        return float(f"{value:.{DIGITS}g}")
+    if isinstance(value, dict):
+        return {key: rounded(item) for key, item in value.items()}
+    return [rounded(item) for item in value] if isinstance(value, (list, tuple)) else value
+
+
+def text_of(value, depth=0):
+    """Returns JSON with one row per line. Each item of a list or object at the top has a line, such as each command;
+    further below, each object of a list or object of objects. A row is one line, whatever it holds."""
+    flat = json.dumps(value)
+    if not isinstance(value, (dict, list)) or depth > 0 and len(flat) <= LINE:
+        return flat
+    items = list(value.values() if isinstance(value, dict) else value)
+    if depth > 1 and not all(isinstance(item, dict) for item in items):
+        return flat
+    names = [json.dumps(name) + ": " for name in value] if isinstance(value, dict) else [""] * len(items)
+    begin, end = "{}" if isinstance(value, dict) else "[]"
+    indent = "\n" + " " * depth
+    lines = ",".join(f"{indent} {name}{text_of(item, depth + 1)}" for name, item in zip(names, items))
+    return begin + lines + indent + end
+
+
+def write_json(path, record):
+    """Writes a record, replacing the file in one step."""
+    part = path.with_suffix(".part")
+    part.write_text(text_of(rounded(record)) + "\n")
+    part.replace(path)
+
+
 def save(name, record, text):
     folder = HERE / "results"
     folder.mkdir(exist_ok=True)
     (folder / f"{name}.md").write_text(text)
-    (folder / f"{name}.json").write_text(json.dumps(record, indent=1) + "\n")
+    write_json(folder / f"{name}.json", record)
 
 
 def add_options(parser):

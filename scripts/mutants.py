@@ -198,9 +198,7 @@ def check_baseline(copy, mutants, options):
 
 def save(path, result):
     if path:
-        part = path.with_suffix(".part")
-        part.write_text(json.dumps(result, indent=1) + "\n")
-        part.replace(path)
+        record.write_json(path, result)
 
 
 def run(options):
