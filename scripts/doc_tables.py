@@ -18,10 +18,11 @@ import textwrap
 
 import folder_list
 import format_versions
+import program_list
 from table_rules import END, GENERATED, tables_of
 
 SCRIPT = "scripts/doc_tables.py"
-STRING = r'"(?:[^"\\]|\\.)*"'
+STRING = program_list.STRING
 # Matches the value of a field of HelpTexts: strings side by side, or a raw string.
 FIELD = rf'\.{{}}\s*=\s*(?:R"\((?P<raw>.*?)\)"|(?P<strings>{STRING}(?:\s*{STRING})*))'
 
@@ -96,16 +97,8 @@ def field_of(help_texts, name):
     return match["raw"] or joined(match["strings"])
 
 
-def listed_summaries(root):
-    """Returns {program: summary} of tools/common/programs.h, which lfr lists."""
-    listed = root / "tools/common/programs.h"
-    text = listed.read_text() if listed.exists() else ""
-    entry = rf'ListedProgram\{{\s*"(\w+)",\s*"\w+",\s*((?:{STRING}\s*)+)\}}'
-    return {name: joined(strings) for name, strings in re.findall(entry, text)}
-
-
 def programs(root):
-    rows, listed = [], listed_summaries(root)
+    rows, listed = [], program_list.summaries(root)
     for name in re.findall(r"^lf_tool\((\w+)", (root / "tools/CMakeLists.txt").read_text(), re.M):
         text = (root / f"tools/{name}.cc").read_text()
         calls = [line.strip().replace(" [OPTIONS]", "") for line in field_of(text, "usage").splitlines()]

@@ -30,6 +30,8 @@ sed -i "s/^frames: .*/frames: 2/" path.yaml
 check lfimport field -o native --match-exposure --vignetting
 check lfcompressor field -o film.lfs
 check lfcompressor field -o lossless.lfs --profile lossless
+check lfsynth still-life -o sparse --count 9 --size 96x64 --samples 1
+check lfdensify sparse -o densified.lfs --force --spacing 0.5 --most 8
 for mode in collect rebin hybrid; do
   check lfrenderer field path.yaml -o "$mode" --mode "$mode"
 done

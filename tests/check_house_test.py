@@ -317,6 +317,17 @@ enum class ErrorKind {
         self.expect("check_house.py", "tables", faults=["doc/codes.md:2: the sources say something else",
                                                         "README.md:2: kExitCodes in tools/common/help.h lists"])
 
+    def test_no_program_is_forgotten(self):
+        self.plant("tools/common/programs.h", 'ListedProgram{"lfone", "one", "Does one thing."},\n')
+        self.plant("tools/CMakeLists.txt", "lf_tool(lfr)\nlf_tool(lfone LIBS x)\n")
+        self.plant("tests/common_options.py", 'OFFERED = {\n    "lfone": {"-q"},\n    "lfr": set(),\n}\n')
+        self.plant("scripts/valgrind.sh", "check lfone --list\ncheck lfr one --list\n")
+        self.expect("program_list.py", faults=[])
+        self.plant("scripts/valgrind.sh", "check lfr one --list\n")
+        self.plant("tools/CMakeLists.txt", "lf_tool(lfr)\nlf_tool(lfone LIBS x)\nlf_tool(lftwo)\n")
+        self.expect("program_list.py", faults=["scripts/valgrind.sh: has no lfone, which tools/common/programs.h lists",
+                                               "tools/CMakeLists.txt: names lftwo, which tools/common/programs.h does"])
+
     def test_programs_and_their_options_are_those_of_the_sources(self):
         self.plant("tools/CMakeLists.txt", "lf_tool(lfone)\nlf_tool(lftwo LIBS x)\n")
         self.plant("tools/lfone.cc", '.summary =\n    "Does one "\n    "thing.",\n.usage = "  lfone A|B [OPTIONS]",\n')

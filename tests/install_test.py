@@ -16,6 +16,7 @@ import unittest
 import numpy as np
 
 import small_field
+from source_messages import PROGRAMS
 
 CMAKE = BUILD = SOURCE = None
 INCLUDE = re.compile(r'^#include "(lf/[^"]+)"', re.M)
@@ -128,9 +129,7 @@ class InstallTest(unittest.TestCase):
         self.assertGreater(light, 0)
 
     def test_programs_and_documents_are_installed(self):
-        for name in ("lfrenderer", "lfexample", "lfsynth", "lfimport", "lfcammvminfo", "lfpath",
-                     "lfpreprocessor", "lfcompressor", "lfdensify", "lffocus", "lfmerge", "lfquilt", "lfsubmit",
-                     "lfcompare", "lfvisualizer", "lfr"):
+        for name in PROGRAMS:
             self.run_tool(self.prefix / "bin" / name, "--version")
         for name in ("README.md", "LICENSE", "CITATION.cff", "doc/conventions.md"):
             self.assertTrue(list(self.prefix.rglob(name)), name)

@@ -2,9 +2,14 @@
 """Finds the messages in the sources that advise something: a command of ours, or an option that mends a call."""
 import pathlib
 import re
+import sys
 
-PROGRAMS = ("lfr lfsynth lfimport lfexample lfcammvminfo lfpath lfpreprocessor lfcompressor lfdensify lfrenderer "
-            "lffocus lfsubmit lfmerge lfquilt lfcompare lfvisualizer").split()
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.append(str(ROOT / "scripts"))
+
+import program_list
+
+PROGRAMS = program_list.names(ROOT)
 TOKEN = re.compile(r'//[^\n]*|R"\((?P<raw>.*?)\)"|(?P<words>"(?:[^"\\\n]|\\.)*"(?:\s*"(?:[^"\\\n]|\\.)*")*)|'
                    r"'(?:[^'\\\n]|\\.)+'", re.S)
 WORD = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
