@@ -13,7 +13,9 @@ Every call of our programs and benchmarks is noted, however a script makes it. T
 bench/results/NAME.json, has
 
     table     the words of the marker in the page: <!-- table: bench/script.py -->
-    commit    of the compiled sources and the scripts; "with changes" if they were changed since
+    version   of the project, and sources, a hash of the compiled sources and the scripts as they were measured.
+              Squashed and rebased history keeps it: bench/tables.py --find HASH names commits with these sources.
+              Older records state a commit instead.
     date, machine, load when started
     made_by   the command line of the script
     commands  each different command with its options; only the last part of paths
@@ -27,6 +29,7 @@ Measured numbers are rounded to DIGITS.
 NAME.md beside it is the text between the markers. scripts/check_house.py . tables compares all of them.
 """
 import datetime
+import hashlib
 import json
 import os
 import pathlib
@@ -50,14 +53,23 @@ _programs = {}  # name -> path
 _is_noting = True
 
 
-def git(*words):
-    return subprocess.run(["git", *words], capture_output=True, text=True, cwd=HERE).stdout.strip()
+def git(*words, **more):
+    return subprocess.run(["git", *words], capture_output=True, text=True, cwd=HERE, **more).stdout.strip()
 
 
-def commit():
-    """Returns HEAD, with a remark if sources were changed since."""
-    changed = git("status", "--porcelain", "--", *SOURCES)
-    return git("rev-parse", "--short", "HEAD") + (" with changes" if changed else "")
+def sources_of(commit="HEAD", with_changes=False):
+    """Returns a hash of the sources of a commit, or of the present ones: those of HEAD with what was changed since."""
+    with tempfile.TemporaryDirectory() as folder:
+        index = os.environ | {"GIT_INDEX_FILE": f"{folder}/index"}
+        git("read-tree", commit, env=index)
+        if with_changes:
+            git("add", "--all", "--", *SOURCES, env=index)
+        files = git("ls-files", "--stage", "--full-name", "--", *SOURCES, env=index)
+    return hashlib.sha256(files.encode()).hexdigest()[:12] if files else "unknown"
+
+
+def present_sources():
+    return sources_of("HEAD", with_changes=True)
 
 
 def machine():
@@ -69,13 +81,15 @@ def machine():
 
 
 def context():
-    return {"date": datetime.date.today().isoformat(), "commit": commit(), "machine": machine(),
-            "load": round(os.getloadavg()[0], 1)}
+    version = (HERE.parent / "VERSION").read_text().strip()
+    return {"date": datetime.date.today().isoformat(), "version": version, "sources": present_sources(),
+            "machine": machine(), "load": round(os.getloadavg()[0], 1)}
 
 
 def sentence(record):
-    return (f"Commit {record['commit']}, {record['date']}; {record['machine']}; "
-            f"load {record['load']} when started.")
+    made_from = (f"Version {record['version']}, sources {record['sources']}" if "sources" in record else
+                 f"Commit {record['commit']}")
+    return f"{made_from}, {record['date']}; {record['machine']}; load {record['load']} when started."
 
 
 def shown(word):

@@ -19,10 +19,8 @@ usage: check_house.py REPOSITORY CHECK
            included only there (header_rules.py)
   comments comments begin and end as doc/style.md requires (comment_rules.py)
   version  VERSION, CHANGELOG.md, CITATION.cff and the add-on of Blender state one version (version_rules.py)
-  commits  the commits that tables were made from are ancestors of HEAD
-  messages subjects and bodies of commits are as doc/style.md requires (commit_rules.py)
-
-commits and messages exit with 77 (skipped) if there is no history.
+  messages subjects and bodies of commits are as doc/style.md requires (commit_rules.py); exits with 77 (skipped) if
+           there is no history
 """
 import functools
 import pathlib
@@ -186,19 +184,14 @@ def check_version(root, files):
     return version_rules.faults_of(root)
 
 
-def check_commits(root, files):
-    return table_rules.check_commits(root, files, text_lines)
-
-
 def check_messages(root, files):
     return commit_rules.check_messages(root)
 
 
 CHECKS = {"lengths": check_lengths, "paths": check_paths, "links": check_links,
           "pages": check_pages, "tables": check_tables, "mutants": check_mutants,
-          "headers": check_headers, "comments": check_comments, "version": check_version, "commits": check_commits,
+          "headers": check_headers, "comments": check_comments, "version": check_version,
           "messages": check_messages}
-OF_HISTORY = {"commits", "messages"}
 SKIPPED = 77
 
 
@@ -211,7 +204,7 @@ def main() -> int:
     if not files:
         print(f"{root}: no files", file=sys.stderr)
         return 1
-    unknown = table_rules.why_no_history(root) if sys.argv[2] in OF_HISTORY else ""
+    unknown = commit_rules.why_no_history(root) if sys.argv[2] == "messages" else ""
     if unknown:
         print(f"skipped: commits cannot be looked up: {unknown}")
         return SKIPPED

@@ -73,8 +73,8 @@ def begun(options, result):
     if not options.resume or not options.output or not options.output.exists():
         return []
     old = json.loads(options.output.read_text())
-    if (old["commit"], old["page"]) != (result["commit"], result["page"]):
-        sys.exit(f"error: {options.output}: is of commit {old['commit']}, or of another page: leave "
+    if (old.get("sources"), old["page"]) != (result["sources"], result["page"]):
+        sys.exit(f"error: {options.output}: is of other sources ({old.get('sources')}), or of another page: leave "
                  "--resume out")
     return [Outcome(Cell(*cell), *rest) for cell, *rest in old["outcomes"]]
 

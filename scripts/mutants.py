@@ -218,7 +218,7 @@ def run(options):
         check_baseline(copy, todo, options)
         for number, mutant in enumerate(todo, 1):
             outcome = try_mutant(copy, mutant, options)
-            result["mutants"][mutant.name] = {"hash": hash_of(mutant), "commit": result["commit"], **outcome}
+            result["mutants"][mutant.name] = {"hash": hash_of(mutant), "sources": result["sources"], **outcome}
             save(options.output, result)
             by = f" by {outcome['by'][0]}" if outcome.get("by") else ""
             print(f"[{number}/{len(todo)}] {mutant.name}: {outcome['outcome']}{by} in {outcome['seconds']} s",

@@ -7,10 +7,8 @@ makes is preceded by <!-- table by hand: WHY -->. Tables of scripts/doc_tables.p
 """
 import hashlib
 import json
-import pathlib
 import re
 import shlex
-import subprocess
 
 RECORDS, LISTING = "bench/results", "bench/defaults.txt"
 # Tables that must be made again, and files of results that are no records, one per line.
@@ -136,8 +134,9 @@ def faults_of(root, table, records, today):
         return
     path, record = records[table.words]
     name = path.relative_to(root)
-    absent = [key for key in ("commit", "date", "machine", "load", "commands", "defaults", "defaults_hash")
-              if key not in record]
+    absent = [key for key in ("date", "machine", "load", "commands", "defaults", "defaults_hash") if key not in record]
+    if "sources" not in record and "commit" not in record:  # older records state a commit
+        absent.append("sources")
     if absent:
         yield f"{name} has no {', '.join(absent)}: make the table again"
         return
@@ -196,31 +195,3 @@ def check_tables(root, files, text_lines):
     for words, (path, _) in records.items():
         if words not in shown:
             yield f"{path.relative_to(root)}: no page shows its table, {words}"
-
-
-def git(root, *words):
-    return subprocess.run(["git", "-C", root, *words], capture_output=True, text=True)
-
-
-def why_no_history(root):
-    """Returns why commits cannot be looked up, or an empty text if they can."""
-    top = git(root, "rev-parse", "--show-toplevel")
-    if top.returncode != 0 or pathlib.Path(top.stdout.strip()).resolve() != root.resolve():
-        return "this is no clone of the repository, but its files alone"
-    if git(root, "rev-parse", "--is-shallow-repository").stdout.strip() == "true":
-        return "this clone is shallow: git fetch --unshallow"
-    return ""
-
-
-def check_commits(root, files, text_lines):
-    """Checks that every table was made from a commit that is an ancestor of HEAD."""
-    tables, _ = all_tables(root, files, text_lines)
-    records, _ = records_of(root, files)
-    for table in tables:
-        if table.words not in records:
-            continue  # check_tables reports this
-        words = str(records[table.words][1].get("commit", "(none)"))
-        if git(root, "merge-base", "--is-ancestor", words.split()[0], "HEAD").returncode != 0:
-            yield f"{table.page}:{table.line}: made from commit {words}, which HEAD has not behind it: make it again"
-        elif "with changes" in words:
-            yield f"{table.page}:{table.line}: made from commit {words}, which nobody else has: make it again"

@@ -6,9 +6,11 @@ usage: record_test.py REPOSITORY
 """
 import json
 import pathlib
+import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 REPOSITORY = pathlib.Path(sys.argv.pop()).resolve()
 sys.path.insert(0, str(REPOSITORY / "bench"))
@@ -42,6 +44,32 @@ class Records(unittest.TestCase):
             record.write_json(path, content)
             self.assertEqual(json.loads(path.read_text()), content)
             self.assertEqual([entry.name for entry in path.parent.iterdir()], ["a.json"])
+
+    def test_the_hash_of_sources_survives_squashing_and_rebasing(self):
+        with tempfile.TemporaryDirectory() as folder, unittest.mock.patch.object(
+                record, "HERE", pathlib.Path(folder, "bench")):
+            pathlib.Path(folder, "bench").mkdir()
+            git = lambda *words: subprocess.run(["git", "-c", "user.name=a", "-c", "user.email=a@example.org", *words],
+                                                cwd=folder, check=True, capture_output=True)
+            for name in ("doc/c.md", *("lf/a.cc" if pattern == "../lf" else f"bench/{pattern.replace('*', 'd')}"
+                                       for pattern in record.SOURCES)):
+                pathlib.Path(folder, name).parent.mkdir(parents=True, exist_ok=True)
+                pathlib.Path(folder, name).write_text("1\n")
+            git("init", "-q")
+            git("add", ".")
+            git("commit", "-q", "-m", "first")
+            first = record.sources_of("HEAD")
+            pathlib.Path(folder, "doc/c.md").write_text("2\n")
+            self.assertEqual(record.present_sources(), first)  # a page is no source
+            pathlib.Path(folder, "lf/a.cc").write_text("2\n")
+            measured = record.present_sources()
+            self.assertNotEqual(measured, first)
+            self.assertEqual(record.sources_of("HEAD"), first)
+            git("commit", "-q", "-a", "-m", "second")
+            self.assertEqual(record.sources_of("HEAD"), measured)
+            git("reset", "-q", "--soft", "HEAD~")
+            git("commit", "-q", "--amend", "-m", "both")
+            self.assertEqual(record.sources_of("HEAD"), measured)
 
     def test_all_records_are_written_so(self):
         paths = list((REPOSITORY / "bench/results").glob("*.json"))
