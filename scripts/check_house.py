@@ -4,7 +4,7 @@
 
 usage: check_house.py REPOSITORY CHECK
 
-  lengths  no source file is longer than 500 lines (doc/style.md)
+  lengths  no source file is longer than 800 lines; those of more than 500 are noted, which is no fault (doc/style.md)
   paths    no file holds an absolute path of somebody's build machine, and no name begins with a dash
            (an option that was taken for a folder)
   links    in every Markdown page: links lead to files and headings that exist, `paths` in
@@ -38,7 +38,7 @@ import table_rules
 import version_rules
 
 SOURCES = {".cc", ".h", ".c", ".py", ".sh", ".cmake", ".txt", ".ts", ".mjs", ".css", ""}
-LINE_LIMIT = 500
+LONG, TOO_LONG = 500, 800  # lines of a source
 MACHINE_PATH = re.compile(r"(?<![\w.$}])/(?:work|root)/[\w.]")
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 # Matches `lf/camera/ray.h` and `scripts/`. Patterns and placeholders contain * < { or ... and do not match (except
@@ -74,8 +74,10 @@ def is_source(path: pathlib.Path) -> bool:
 def check_lengths(root, files):
     for path in filter(is_source, files):
         count = len(text_lines(path))
-        if count > LINE_LIMIT:
-            yield f"{path.relative_to(root)}: {count} lines, the limit is {LINE_LIMIT}: split it"
+        if count > TOO_LONG:
+            yield f"{path.relative_to(root)}: {count} lines, the limit is {TOO_LONG}: split it"
+        elif count > LONG:
+            print(f"note: {path.relative_to(root)}: {count} lines; has it parts that can be read alone?")
 
 
 def check_paths(root, files):

@@ -46,10 +46,14 @@ class PlantedFaults(unittest.TestCase):
         if faults:
             self.assertEqual(len(lines), len(faults), lines)
 
-    def test_a_source_of_501_lines_is_too_long(self):
-        self.plant("lf/core/long.cc", "int x;\n" * 501)
-        self.plant("lf/core/just.cc", "int x;\n" * 500)
-        self.expect("check_house.py", "lengths", faults=["lf/core/long.cc: 501"])
+    def test_a_source_of_801_lines_is_too_long_and_one_of_501_is_noted(self):
+        self.plant("lf/core/fine.cc", "int x;\n" * 500)
+        self.plant("lf/core/long.cc", "int x;\n" * 800)
+        code, lines = run("check_house.py", self.root, "lengths")
+        self.assertEqual((code, lines), (0, ["note: lf/core/long.cc: 800 lines; has it parts that can be read alone?",
+                                             "2 files, no fault"]))
+        self.plant("lf/core/long.cc", "int x;\n" * 801)
+        self.expect("check_house.py", "lengths", faults=["lf/core/long.cc: 801"])
 
     def test_paths_of_a_machine_are_found_wherever_they_are(self):
         self.plant("lf/core/a.h", "// see /" + "work/shared/notes\n")
