@@ -13,8 +13,8 @@ usage: check_house.py REPOSITORY CHECK
   tables   every table of figures in doc/ has a record in bench/results/ that fits it, made with the
            defaults that bench/defaults.txt lists today (table_rules.py); every table that
            doc_tables.py makes is what the sources say
-  mutants  every mistake of scripts/mutants.toml can be planted: its old text is in its file exactly once, and its
-           regular expression matches names of tests
+  mutants  every mistake of scripts/mutants.toml can be planted: its old text is in its function exactly once, and
+           its regular expression matches names of tests
   headers  the headers that the library promises exist and include few others; a header that says "Internal to" is
            included only there (header_rules.py)
   comments comments begin and end as doc/style.md requires (comment_rules.py)

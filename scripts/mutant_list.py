@@ -6,7 +6,9 @@ A mutant is a mistake that somebody could make, planted into one file. Its field
     name      letters, digits and hyphens; occurs once in the list
     area      the part of the project it is in
     file      where it is planted, from the top of the repository
-    old, new  the text that is replaced, which occurs in the file exactly once, and its replacement
+    function  the function, method or constant in whose definition it is planted; overloads count as one
+    old, new  a short text that occurs in the function exactly once, and its replacement. White space may differ, and
+              other lines of the function may change
     effect    one sentence: what a user would see
     targets   what is built for the tests: test programs, programs, or "page"
     tests     a regular expression of test names of ctest: the tests expected to fail
@@ -16,14 +18,17 @@ import re
 import tomllib
 from typing import NamedTuple
 
+import function_text
+
 LIST = "scripts/mutants.toml"
-WORDS = ("name", "area", "file", "old", "new", "effect", "tests")
+WORDS = ("name", "area", "file", "function", "old", "new", "effect", "tests")
 
 
 class Mutant(NamedTuple):
     name: str
     area: str
     file: str
+    function: str
     old: str
     new: str
     effect: str
@@ -47,11 +52,17 @@ def read_list(path: pathlib.Path) -> list:
 
 
 def planted(mutant: Mutant, text: str) -> str:
-    """Returns the text with the mistake planted. Raises ValueError if `old` does not occur exactly once."""
-    count = text.count(mutant.old)
-    if count != 1:
-        raise ValueError(f"{mutant.name}: {mutant.file} has its old text {count} times, expected once")
-    return text.replace(mutant.old, mutant.new)
+    """Returns the text with the mistake planted. Raises ValueError if the function has `old` not exactly once."""
+    functions = function_text.spans(text, mutant.function)
+    if not functions:
+        raise ValueError(f"{mutant.name}: {mutant.file} has no function or constant {mutant.function}")
+    old = re.compile(r"\s+".join(map(re.escape, mutant.old.split())))
+    found = {place.span() for begin, end in functions for place in old.finditer(text, begin, end)}
+    if len(found) != 1:
+        raise ValueError(f"{mutant.name}: {mutant.function} of {mutant.file} has its old text {len(found)} times, "
+                         "expected once")
+    (begin, end), = found
+    return text[:begin] + mutant.new + text[end:]
 
 
 def faults_of(mutant: Mutant, root: pathlib.Path, tests: set):
@@ -60,6 +71,8 @@ def faults_of(mutant: Mutant, root: pathlib.Path, tests: set):
         yield f"{mutant.name}: a name has small letters, digits and hyphens"
     if mutant.old == mutant.new:
         yield f"{mutant.name}: its new text is the old one"
+    if not mutant.old.strip():
+        yield f"{mutant.name}: its old text is empty"
     if not (root / mutant.file).is_file():
         yield f"{mutant.name}: there is no {mutant.file}"
     else:

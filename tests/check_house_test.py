@@ -17,6 +17,7 @@ REPOSITORY = pathlib.Path(sys.argv.pop()).resolve()
 sys.path.insert(0, str(REPOSITORY / "scripts"))
 
 import commit_rules
+import function_text
 
 FIRST = datetime.datetime.fromisoformat("2026-01-02T00:00:00+00:00")
 
@@ -360,6 +361,7 @@ enum class ErrorKind {
 name = "{name}"
 area = "core"
 file = "{file}"
+function = "{function}"
 old = '{old}'
 new = 'i <= n'
 effect = "One too many."
@@ -368,29 +370,52 @@ tests = '{tests}'
 """
 
     def plant_mutants(self, *mutants):
-        fine = {"name": "fine", "file": "lf/core/a.cc", "old": "i < n", "tests": "^core"}
+        fine = {"name": "fine", "file": "lf/core/a.cc", "function": "Sum", "old": "i < n", "tests": "^core"}
         self.plant("scripts/mutants.toml", "\n".join(self.MUTANT.format(**(fine | m)) for m in mutants))
 
     def test_mutants_are_in_step_with_the_code(self):
-        self.plant("lf/core/a.cc", "i < n; j < m; j < m\n")
+        self.plant("lf/core/a.cc", "int Sum(int n);\nint Other(int n) { return i < n; }\n"
+                   "// i < n\nint Sum(int n) const {\n  for (; i <\n       n;) j < m + j < m;\n}\n")
         self.plant("lf/core/a_test.cc", "TEST(Suite, There) {}\n")
         self.expect("check_house.py", "mutants", faults=[])  # there is no list
         self.plant_mutants({})
         self.expect("check_house.py", "mutants", faults=[])
         self.plant_mutants({"name": "gone", "old": "i < m"}, {"name": "twice", "old": "j < m"},
                            {"name": "same", "old": "i <= n"}, {"name": "no-file", "file": "lf/core/b.cc"},
+                           {"name": "no-function", "function": "Product"},
                            {"name": "no-test", "tests": "^camera"}, {"name": "wrong", "tests": "("},
                            {"name": "Big"}, {}, {})
         start = "scripts/mutants.toml: "
         self.expect("check_house.py", "mutants", faults=[
-            f"{start}gone: lf/core/a.cc has its old text 0 times",
-            f"{start}twice: lf/core/a.cc has its old text 2 times",
-            f"{start}same: its new text is the old one", f"{start}same: lf/core/a.cc has its old text 0 times",
+            f"{start}gone: Sum of lf/core/a.cc has its old text 0 times",
+            f"{start}twice: Sum of lf/core/a.cc has its old text 2 times",
+            f"{start}same: its new text is the old one", f"{start}same: Sum of lf/core/a.cc has its old text 0 times",
+            f"{start}no-function: lf/core/a.cc has no function or constant Product",
             f"{start}no-file: there is no lf/core/b.cc", f"{start}no-test: no test is named like ^camera",
             f"{start}wrong: its tests are no regular expression", f"{start}Big: a name has small letters",
             f"{start}fine: is there twice"])
         self.plant("scripts/mutants.toml", "[[mutant]]\nname = 'bare'\n")
         self.expect("check_house.py", "mutants", faults=[f"{start}a mutant has no 'area'"])
+
+    def test_functions_and_constants_are_found_by_their_names(self):
+        text = """int Sum(int);  // Sum(int) { is declared
+struct Box : Base {
+  explicit Box(int n) : Base(n), size_{n}, text_("}") {
+    Use(n);
+  }
+  int At(int i) const noexcept { return Sum(At<1>(i)); }
+  template <typename T> auto At() const -> std::vector<T> { if (Sum(2)) { return {}; } return {1}; }
+};
+constexpr float kWidths[2] = {1, 2}, kEnd = 3;
+const twice = (x: number): number => ({ y: 2 * x });
+export function twiceAll(all: number[]): { y: number }[] { return all.map(twice); }
+"""
+        found = lambda name: [text[begin:end] for begin, end in function_text.spans(text, name)]
+        self.assertEqual(found("Sum"), [])
+        self.assertEqual([part.splitlines()[-1] for part in found("Box")], ["  }"])
+        self.assertEqual([part[-10:] for part in found("At")], ["<1>(i)); }", "urn {1}; }"])
+        self.assertEqual(found("kWidths"), ["kWidths[2] = {1, 2}, kEnd = 3;"])
+        self.assertEqual(found("twice"), ["twice = (x: number): number => ({ y: 2 * x });"])
 
     def git(self, *words):
         done = subprocess.run(["git", "-c", "user.name=a", "-c", "user.email=a@example.org", *words], cwd=self.root,
