@@ -44,7 +44,7 @@ import defaults
 HERE = pathlib.Path(__file__).resolve().parent
 END = "<!-- end of table -->"
 # Figures depend on these: compiled sources, and the scripts that measure.
-SOURCES = ("../lf", "../tools", "../cmake", "../CMakeLists.txt", "*.cc", "*.h", "*.py", "../scripts/*.py")
+SOURCES = ("../lf", "../tools", "../cmake", "../CMakeLists.txt", "*.cc", "*.h", "*.py")
 DIGITS = 7  # tables show fewer: a table made of a rounded record has the same text
 LINE = 100  # a list or object of at most so many characters is written as one line
 
@@ -204,14 +204,14 @@ def marker_of(script):
 
 
 def name_of(script):
-    """Returns the name of a record: lens_weights-captures for "scripts/lens_weights.py captures"."""
+    """Returns the name of a record: lens_weights-captures for "bench/quality/lens_weights.py captures"."""
     return re.sub(r"[^\w.]+", "-", pathlib.Path(script).name.replace(".py", "")).strip("-")
 
 
 def publish(arguments, script, record, text):
     """Prints the table, and writes it to the places that the options state.
 
-    script  "name.py", "name.py WORDS", or "scripts/name.py WORDS": the words of the page's marker
+    script  "name.py WORDS", "quality/name.py WORDS", or "scripts/name.py WORDS": the words of the page's marker
     """
     global _is_noting
     _is_noting = False  # the query of the defaults is no command of the table

@@ -28,6 +28,7 @@ import defaults
 import record as results
 
 ROOT = results.HERE.parent
+WEIGHTS = "bench/quality/lens_weights.py {build}/bin/lfrenderer {data}/groundtruth --tables "
 # name of the record: (page, script with its words, words of --tiny)
 TABLES = {
     "workloads": ("performance", "bench/workloads.py {build}",
@@ -42,8 +43,8 @@ TABLES = {
                     "--density 0.005 --size 48x32 --only stack"),
     "simultaneous_packages": ("performance", "bench/simultaneous_packages.py {build}",
                               "--density 0.005 --size 48x32 --packages 1,2 --runs 1"),
-    "noise_remedies": ("rebinning", "bench/noise_remedies.py {build} {data}/groundtruth", "--only nothing"),
-    "noise_rule": ("checkpoints", "bench/noise_rule.py {build} --data {data}", None),
+    "noise_remedies": ("rebinning", "bench/quality/noise_remedies.py {build} {data}/groundtruth", "--only nothing"),
+    "noise_rule": ("checkpoints", "bench/quality/noise_rule.py {build} --data {data}", None),
     "codec_speed": ("codec", "bench/codec_speed.py {build} --data {data} --runs 3", "--runs 2"),
     "focus_numpy": ("focus", "bench/focus_numpy.py {build} {data}/data/stanford-cards-9x9", "--runs 1 --planes 2"),
     "scale": ("performance", "bench/scale.py {build}", "--counts 100,200 --weighed 100 --frames 5 --packages 2"),
@@ -53,23 +54,16 @@ TABLES = {
                    "--only many --cameras 1000 --pictures 3"),
     "codec": ("codec", "bench/codec_table.py {build} --data {data} --pictures doc/images",
               "--only synth --views 3 --size 64x48 --frames 1-2"),
-    "quality": ("quality", "scripts/quality.py {build}/bin/lfrenderer {data}/groundtruth", ""),
-    "quality-areas": ("quality", "scripts/quality.py --areas {build}/bin/lfrenderer {data}/groundtruth", ""),
-    "rebinning_quality": ("rebinning", "scripts/rebinning_quality.py {build}/bin/lfrenderer {data}/groundtruth",
+    "quality": ("quality", "bench/quality/quality.py {build}/bin/lfrenderer {data}/groundtruth", ""),
+    "quality-areas": ("quality", "bench/quality/quality.py --areas {build}/bin/lfrenderer {data}/groundtruth", ""),
+    "rebinning_quality": ("rebinning", "bench/quality/rebinning_quality.py {build}/bin/lfrenderer {data}/groundtruth",
                           "--only band_d3"),
-    "lens_weights-captures": ("lens-integral",
-                              "scripts/lens_weights.py {build}/bin/lfrenderer {data}/groundtruth --tables captures",
-                              "--only band_d3"),
-    "lens_weights-lenses": ("lens-integral",
-                            "scripts/lens_weights.py {build}/bin/lfrenderer {data}/groundtruth --tables lenses",
-                            "--only nothing"),
-    "lens_weights-magnifications": ("lens-integral",
-                                    "scripts/lens_weights.py {build}/bin/lfrenderer {data}/groundtruth "
-                                    "--tables magnifications", "--only nothing"),
-    "lens_weights-mosaics": ("quality",
-                             "scripts/lens_weights.py {build}/bin/lfrenderer {data}/groundtruth --tables mosaics",
-                             "--only nothing"),
-    **{f"densify_quality-{group}": ("densify", "scripts/densify_quality.py {build}/bin {data} --only " + group, None)
+    "lens_weights-captures": ("lens-integral", WEIGHTS + "captures", "--only band_d3"),
+    "lens_weights-lenses": ("lens-integral", WEIGHTS + "lenses", "--only nothing"),
+    "lens_weights-magnifications": ("lens-integral", WEIGHTS + "magnifications", "--only nothing"),
+    "lens_weights-mosaics": ("quality", WEIGHTS + "mosaics", "--only nothing"),
+    **{f"densify_quality-{group}": ("densify",
+                                    "bench/quality/densify_quality.py {build}/bin {data} --only " + group, None)
        for group in ("planar", "band", "scenes", "shop", "cards", "spoiled", "flicker")},
     "image_orders": ("performance", "bench/image_orders.py {build}", "--density 0.002"),
     "forecast_table": ("cluster", "bench/forecast_table.py {build}", "--count 400 --packages 1,2"),

@@ -65,7 +65,7 @@ add_library(lfrendertools::lfrendertools ALIAS lfrendertools)
 #   SOURCES      the .cc files
 #   ALONE        .cc files among SOURCES that are not compiled together with others: kernels, which include themselves
 #                once for each instruction set, and files that share names with others on purpose
-#   DEPENDS      the folders it may include, as paths (doc/layout.md; checked by scripts/check_includes.py)
+#   DEPENDS      the folders it may include, as paths (doc/layout.md; checked by scripts/house/include_rules.py)
 #   LIBS         third-party targets its .cc files need;  PUBLIC_LIBS: its headers too
 #   TESTS        x_test.cc files: one program per folder, each of its suites a test of ctest, named
 #                camera.Suite or camera.path.Suite

@@ -63,5 +63,5 @@ if(LF_PROGRAM_PAGES)
 endif()
 install(FILES README.md CHANGELOG.md LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 # Pages link to the schemas, and editors name them by a path that does not change.
-install(DIRECTORY doc examples schemas DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY doc examples schemas DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN doc/figures EXCLUDE)
 install(DIRECTORY schemas DESTINATION ${CMAKE_INSTALL_DATADIR}/lfrendertools)

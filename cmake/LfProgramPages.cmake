@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Makes man pages, completion for shells and the reference page of the programs: the target program_pages, which is a
-# part of `all`. The programs are asked for their description (scripts/program_pages.py), so that no page is older than
+# part of `all`. The programs are asked for their description (scripts/program_pages/program_pages.py), so that no page is older than
 # its program. LF_PROGRAM_PAGES names the folder; it is empty if the programs cannot be run.
 set(LF_PROGRAM_PAGES "")
 if(CMAKE_CROSSCOMPILING)
@@ -14,10 +14,10 @@ endif()
 set(LF_PROGRAM_PAGES ${PROJECT_BINARY_DIR}/program_pages)
 get_property(tools GLOBAL PROPERTY LF_TOOLS)
 set(scripts program_pages man_pages shell_completion)
-list(TRANSFORM scripts REPLACE "(.+)" "${PROJECT_SOURCE_DIR}/scripts/\\1.py")
+list(TRANSFORM scripts REPLACE "(.+)" "${PROJECT_SOURCE_DIR}/scripts/program_pages/\\1.py")
 add_custom_command(
   OUTPUT ${LF_PROGRAM_PAGES}/programs.md
-  COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/program_pages.py ${PROJECT_BINARY_DIR}/bin
+  COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/program_pages/program_pages.py ${PROJECT_BINARY_DIR}/bin
           ${LF_PROGRAM_PAGES} ${tools}
   DEPENDS ${tools} ${scripts}
   COMMENT "Making man pages and completion of the programs"

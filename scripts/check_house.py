@@ -4,6 +4,8 @@
 
 usage: check_house.py REPOSITORY CHECK
 
+  includes folders of lf/ include only what lf_folder(... DEPENDS ...) allows, third-party headers only in the folders
+           that own them; rooms do not depend on each other in a cycle (include_rules.py)
   lengths  no source file is longer than 800 lines; those of more than 500 are noted, which is no fault (doc/style.md)
   paths    no file holds an absolute path of somebody's build machine, and no name begins with a dash
            (an option that was taken for a folder)
@@ -17,25 +19,29 @@ usage: check_house.py REPOSITORY CHECK
            its regular expression matches names of tests
   headers  the headers that the library promises exist and include few others; a header that says "Internal to" is
            included only there (header_rules.py)
+  licences every source states its licence in its first line (licence_headers.py)
+  programs places that have words for each program name all of them (program_list.py)
   comments comments begin and end as doc/style.md requires (comment_rules.py)
   version  VERSION, CHANGELOG.md, CITATION.cff and the add-on of Blender state one version (version_rules.py)
   messages subjects and bodies of commits are as doc/style.md requires (commit_rules.py); exits with 77 (skipped) if
            there is no history
 """
-import functools
 import pathlib
 import re
-import subprocess
 import sys
 
+import doc_tables  # which adds scripts/house to the search path
 import comment_rules
 import commit_rules
-import doc_tables
 import folder_list
 import header_rules
+import include_rules
+import licence_headers
 import mutant_list
+import program_list
 import table_rules
 import version_rules
+from repository_files import text_lines, tracked_files
 
 SOURCES = {".cc", ".h", ".c", ".py", ".sh", ".cmake", ".txt", ".ts", ".mjs", ".css", ""}
 LONG, TOO_LONG = 500, 800  # lines of a source
@@ -46,24 +52,6 @@ LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 NAMED_FILE = re.compile(r"`((?:lf|tools|tests|scripts|doc|examples|cmake|fuzz|bench)/[\w./-]*)`")
 NAMED_TEST = re.compile(r"`([a-z_]+(?:\.[a-z_]+)?\.[A-Z]\w*\.\w+|(?:tests|house)\.\w+)`")
 PAGE_IN_COMMENT = re.compile(r"\bdoc/[\w/]+\.md\b")
-
-
-def tracked_files(root: pathlib.Path) -> list:
-    """Returns the files that git knows; in an unpacked archive, all files except build outputs."""
-    git = subprocess.run(["git", "-C", root, "ls-files", "-z"], capture_output=True)
-    if git.returncode == 0 and git.stdout:
-        names = [root / name for name in git.stdout.decode().split("\0") if name]
-        return sorted(name for name in names if name.is_file())
-    skipped = {"build", "demo-output", ".git"}
-    return sorted(p for p in root.rglob("*")
-                  if p.is_file() and p.relative_to(root).parts[0] not in skipped)
-
-
-@functools.lru_cache(maxsize=None)
-def text_lines(path: pathlib.Path) -> tuple:
-    """Returns the lines of a text file, or none for a binary one (it contains a NUL)."""
-    data = path.read_bytes()
-    return () if b"\0" in data else tuple(data.decode("utf-8", "replace").splitlines())
 
 
 def is_source(path: pathlib.Path) -> bool:
@@ -182,6 +170,18 @@ def check_headers(root, files):
     return header_rules.check_headers(root, files, text_lines)
 
 
+def check_includes(root, files):
+    return include_rules.check_includes(root)
+
+
+def check_licences(root, files):
+    return licence_headers.faults_of(root, files)
+
+
+def check_programs(root, files):
+    return program_list.missing(root)
+
+
 def check_version(root, files):
     return version_rules.faults_of(root)
 
@@ -190,10 +190,10 @@ def check_messages(root, files):
     return commit_rules.check_messages(root)
 
 
-CHECKS = {"lengths": check_lengths, "paths": check_paths, "links": check_links,
-          "pages": check_pages, "tables": check_tables, "mutants": check_mutants,
-          "headers": check_headers, "comments": check_comments, "version": check_version,
-          "messages": check_messages}
+CHECKS = {"includes": check_includes, "licences": check_licences, "programs": check_programs,
+          "lengths": check_lengths, "paths": check_paths, "links": check_links, "pages": check_pages,
+          "tables": check_tables, "mutants": check_mutants, "headers": check_headers, "comments": check_comments,
+          "version": check_version, "messages": check_messages}
 SKIPPED = 77
 
 

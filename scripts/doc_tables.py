@@ -16,6 +16,7 @@ import runpy
 import sys
 import textwrap
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "house"))
 import folder_list
 import format_versions
 import program_list

@@ -65,7 +65,7 @@ faults() {
 # Prints the lines of the first section of the changelog.
 section() {
   $python -c 'import pathlib, sys
-sys.path.insert(0, "scripts")
+sys.path.insert(0, "scripts/house")
 import version_rules
 print((version_rules.section_of(pathlib.Path(".")) or ("", "", ""))[2])'
 }

@@ -15,6 +15,7 @@ import argparse
 import pathlib
 import sys
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "house"))
 import version_rules
 
 

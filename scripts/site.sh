@@ -11,4 +11,4 @@ cd "$(dirname "$0")/.."
 scripts/install_packages.sh site
 programs=build/${LF_PRESET:-release}/program_pages/programs.md
 if [[ ! -e $programs ]]; then programs=; fi
-exec /usr/bin/python3 scripts/site.py "$out" ${programs:+"$programs"}
+exec /usr/bin/python3 scripts/site/site.py "$out" ${programs:+"$programs"}

@@ -14,7 +14,7 @@ import tempfile
 import unittest
 
 REPOSITORY = pathlib.Path(sys.argv.pop()).resolve()
-sys.path.insert(0, str(REPOSITORY / "scripts"))
+sys.path.insert(0, str(REPOSITORY / "scripts/house"))
 
 import commit_rules
 import function_text
@@ -88,24 +88,17 @@ class PlantedFaults(unittest.TestCase):
         for name, text in before.items():
             self.plant(name, text)
 
-        def licence_headers(way):
-            command = [sys.executable, REPOSITORY / "scripts/licence_headers.py", way, self.root]
-            done = subprocess.run(command, capture_output=True, text=True)
-            return done.returncode, done.stdout.splitlines()
-
-        code, lines = licence_headers("--check")
-        self.assertEqual((code, sorted(line.split(":")[0] for line in lines)),
-                         (1, sorted(name for name in before if before[name] != after[name])))
+        self.expect("check_house.py", "licences", faults=[name for name in before if before[name] != after[name]])
         for _ in range(2):  # the second call changes nothing
-            self.assertEqual(licence_headers("--write")[0], 0)
+            subprocess.run([sys.executable, REPOSITORY / "scripts/house/licence_headers.py", "--write", self.root],
+                           check=True, capture_output=True)
             self.assertEqual({name: (self.root / name).read_text() for name in before}, after)
         self.expect("check_house.py", "comments", faults=[])
         self.plant("lf/core/a.cc", f"// {line}\n// What x is.\nint x;\n")
         self.expect("check_house.py", "comments", faults=["lf/core/a.cc:2"])
         self.plant("lf/core/a.xyz", "int x;\n")
         self.plant("run", f"#!/usr/bin/env bash\n# {line}\nsed -n '4" "s/^# //p' run\n")
-        code, lines = licence_headers("--check")
-        self.assertEqual([line.split(": ")[0] for line in lines], ["lf/core/a.xyz:1", "run:3"])
+        self.expect("check_house.py", "licences", faults=["lf/core/a.xyz:1: ", "run:3: "])
 
     def test_links_must_lead_somewhere(self):
         self.plant("doc/there.md", "# A heading, here\n[up](#a-heading-here)\n")
@@ -130,7 +123,7 @@ class PlantedFaults(unittest.TestCase):
         self.plant("lf/core/a.cc", '#include "lf/camera/b.h"\n#include <yaml-cpp/yaml.h>\n')
         self.plant("lf/camera/CMakeLists.txt", "lf_folder(camera DEPENDS core)\n")
         self.plant("lf/camera/b.h", '#include "lf/core/c.h"\n#include "tools/common/d.h"\n')
-        self.expect("check_includes.py",
+        self.expect("check_house.py", "includes",
                     faults=["lf/core/a.cc:1", "lf/core/a.cc:2", "lf/camera/b.h:2"])
 
     def test_command_lines_are_found_outside_of_the_programs(self):
@@ -159,11 +152,11 @@ class PlantedFaults(unittest.TestCase):
         self.plant("lf/core/a.cc", "#include <vector>\n")
         self.plant("lf/camera/path/CMakeLists.txt", "lf_folder(camera/path DEPENDS core)\n")
         self.plant("lf/camera/path/b.h", '#include "lf/camera/path/c.h"\n#include "lf/core/a.h"\n')
-        self.expect("check_includes.py", faults=[])
+        self.expect("check_house.py", "includes", faults=[])
         self.plant("lf/camera/path/b.h", '#include "lf/camera/c.h"\n#include "lf/core/path/a.h"\n')
         self.plant("lf/camera/spline/CMakeLists.txt", "lf_folder(spline DEPENDS path core)\n")
         self.plant("lf/film/d.h", "")
-        self.expect("check_includes.py", faults=[
+        self.expect("check_house.py", "includes", faults=[
             "lf/camera/path/b.h:1: camera/path may not include", "lf/camera/path/b.h:2",
             "lf/camera/spline/CMakeLists.txt: lf_folder names spline",
             "lf/camera/spline/CMakeLists.txt: DEPENDS names path", "lf/film/d.h: no lf_folder"])
@@ -174,10 +167,11 @@ class PlantedFaults(unittest.TestCase):
         for folder, others in folders.items():
             self.plant(f"lf/{folder}/CMakeLists.txt", f"lf_folder({folder} SOURCES a.cc DEPENDS {others})\n")
             self.plant(f"lf/{folder}/a.cc", "")
-        self.expect("check_includes.py", faults=["lf/film/develop/CMakeLists.txt: DEPENDS render/state is part",
-                                                 "lf/render/state/CMakeLists.txt: DEPENDS film/plate is part"])
+        self.expect("check_house.py", "includes", faults=[
+            "lf/film/develop/CMakeLists.txt: DEPENDS render/state is part",
+            "lf/render/state/CMakeLists.txt: DEPENDS film/plate is part"])
         self.plant("lf/film/develop/CMakeLists.txt", "lf_folder(film/develop DEPENDS film/plate)\n")
-        self.expect("check_includes.py", faults=[])
+        self.expect("check_house.py", "includes", faults=[])
 
     def test_internal_headers_stay_in_their_folders(self):
         self.plant("lf/core/CMakeLists.txt", "lf_folder(core DEPENDS)\n")
@@ -330,11 +324,12 @@ enum class ErrorKind {
         self.plant("tools/CMakeLists.txt", "lf_tool(lfr)\nlf_tool(lfone LIBS x)\n")
         self.plant("tests/common_options.py", 'OFFERED = {\n    "lfone": {"-q"},\n    "lfr": set(),\n}\n')
         self.plant("scripts/valgrind.sh", "check lfone --list\ncheck lfr one --list\n")
-        self.expect("program_list.py", faults=[])
+        self.expect("check_house.py", "programs", faults=[])
         self.plant("scripts/valgrind.sh", "check lfr one --list\n")
         self.plant("tools/CMakeLists.txt", "lf_tool(lfr)\nlf_tool(lfone LIBS x)\nlf_tool(lftwo)\n")
-        self.expect("program_list.py", faults=["scripts/valgrind.sh: has no lfone, which tools/common/programs.h lists",
-                                               "tools/CMakeLists.txt: names lftwo, which tools/common/programs.h does"])
+        self.expect("check_house.py", "programs", faults=[
+            "scripts/valgrind.sh: has no lfone, which tools/common/programs.h lists",
+            "tools/CMakeLists.txt: names lftwo, which tools/common/programs.h does"])
 
     def test_programs_and_their_options_are_those_of_the_sources(self):
         self.plant("tools/CMakeLists.txt", "lf_tool(lfone)\nlf_tool(lftwo LIBS x)\n")
@@ -462,9 +457,8 @@ export function twiceAll(all: number[]): { y: number }[] { return all.map(twice)
     def test_a_clean_house_has_no_faults(self):
         self.plant("lf/core/CMakeLists.txt", "lf_folder(core SOURCES a.cc)\n")
         self.plant("lf/core/a.cc", "#include <vector>\n")
-        for check in ("lengths", "paths", "links", "pages", "tables", "headers", "comments"):
+        for check in ("includes", "lengths", "paths", "links", "pages", "tables", "headers", "comments"):
             self.expect("check_house.py", check, faults=[])
-        self.expect("check_includes.py", faults=[])
 
 
 if __name__ == "__main__":

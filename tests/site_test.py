@@ -17,6 +17,7 @@ import urllib.parse
 
 SOURCE, PROGRAM_PAGES = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
 del sys.argv[1:]
+MAKER = SOURCE / "scripts/site/site.py"
 SKIPPED = 77
 # Attributes whose file a browser fetches without being asked.
 FETCHED = {"link": "href", "script": "src", "img": "src", "source": "src", "video": "src", "iframe": "src"}
@@ -73,7 +74,7 @@ class Site(unittest.TestCase):
         cls.folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(cls.folder.cleanup)
         cls.site = pathlib.Path(cls.folder.name) / "site"
-        done = subprocess.run([sys.executable, SOURCE / "scripts/site.py", cls.site, PROGRAM_PAGES / "programs.md"],
+        done = subprocess.run([sys.executable, MAKER, cls.site, PROGRAM_PAGES / "programs.md"],
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         if done.returncode == SKIPPED:
             raise unittest.SkipTest(done.stdout.strip())
@@ -128,7 +129,7 @@ class Site(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             mine = pathlib.Path(folder) / "mine.txt"
             mine.write_text("mine")
-            done = subprocess.run([sys.executable, SOURCE / "scripts/site.py", folder], capture_output=True, text=True)
+            done = subprocess.run([sys.executable, MAKER, folder], capture_output=True, text=True)
             self.assertEqual(done.returncode, 2)
             self.assertIn("is not a site", done.stderr)
             self.assertEqual(mine.read_text(), "mine")

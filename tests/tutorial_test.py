@@ -14,7 +14,7 @@ import unittest
 
 PROGRAMS, SOURCE, DATA = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
 del sys.argv[1:]
-sys.path.insert(0, str(SOURCE / "scripts"))
+sys.path.insert(0, str(SOURCE / "doc/figures"))
 
 import page_commands
 

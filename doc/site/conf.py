@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Settings of Sphinx for the site. scripts/site.py copies the pages into a folder and runs Sphinx on it."""
+"""Settings of Sphinx for the site. scripts/site/site.py copies the pages into a folder and runs Sphinx on it."""
 import pathlib
 import sys
 
@@ -21,7 +21,7 @@ myst_heading_anchors = 4
 
 # The Python package is described without being built: its extension and NumPy are not imported.
 sys.path.insert(0, str(ROOT / "python"))
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path.insert(0, str(ROOT / "scripts/site"))
 import site_theme
 autodoc_mock_imports = ["lfrendertools._core", "numpy"]
 autodoc_typehints = "none"  # the docstrings state the types

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The description of a program as JSON, which the hidden option --describe prints. Man pages,
-// completion in shells and the reference page are made from it (scripts/program_pages.py).
+// completion in shells and the reference page are made from it (scripts/program_pages).
 //
 // {
 //   "format": "lfrendertools program 1",

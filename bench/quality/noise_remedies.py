@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures how much the remedies of thesis 5.3 reduce noise in rebinned frames.
 
-usage: bench/noise_remedies.py BUILD_DIR GROUNDTRUTH [--electrons 1000] [--read-noise 5] [--seed 1]
+usage: bench/quality/noise_remedies.py BUILD_DIR GROUNDTRUTH [--electrons 1000] [--read-noise 5] [--seed 1]
                                [--only SUBSTRING] [--remedies SUBSTRING] [--name NAME] [--write PAGE]
-       bench/noise_remedies.py --again JSON [--write PAGE]
+       bench/quality/noise_remedies.py --again JSON [--write PAGE]
 
-GROUNDTRUTH  as for scripts/quality.py: LF images without noise, and true thin-lens pictures
+GROUNDTRUTH  as for bench/quality/quality.py: LF images without noise, and true thin-lens pictures
 --electrons  electrons that a pixel of the sensor collects at white; their noise is photon noise
 --read-noise standard deviation, in electrons, of the noise that reading adds to every pixel
 
@@ -27,11 +27,9 @@ import subprocess
 import sys
 import tempfile
 
-import record as results
-
-sys.path.insert(0, str(results.HERE.parent / "scripts"))
 import lens_weights
 from lens_weights import cv2, np
+from quality import results
 from rebinning_quality import ground_truth_cases
 
 FULL = "--mode rebin --estimator bilinear --filter prefiltered --lens-weights auto"
@@ -199,7 +197,7 @@ def main():
     text = "\n".join([results.sentence(record) + " LF images with the noise of "
                                                  f"{record['electrons']:g} electrons at white "
                       f"and {record['read_noise']:g} of reading, seed {record['seed']}.", ""] + table(record)) + "\n"
-    results.publish(arguments, "noise_remedies.py", record, text)
+    results.publish(arguments, "quality/noise_remedies.py", record, text)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
 """Goes from folders of captures to a first picture and to a film of each move, as a newcomer would: with the commands
 that the programs print, and without editing a file. Writes a sheet of what came out.
 
-usage: scripts/first_films.py BIN -o FOLDER [--data DIR] [--only NAME]... [--sheet-only]
+usage: bench/quality/first_films.py BIN -o FOLDER [--data DIR] [--only NAME]... [--sheet-only]
 
 BIN           the folder of the programs, such as build/release/bin
 -o FOLDER     gets results.json, some frames of each film, drawn.jpg with the captures that are drawn here, and
@@ -31,7 +31,7 @@ import time
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-ROOT = pathlib.Path(__file__).resolve().parents[1]
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests")]
 
 from judgements import focus, scenes

@@ -2,7 +2,7 @@
 // Makes doc/images/visualizer_live.webp, a film of the live picture in use: focus, aperture, blades, tilt and orbit by the
 // mouse. Needs Chromium and ffmpeg, and the packages of web/.
 //
-// usage: LF_BIN=build/release/bin node scripts/live_film.mjs FILM.webp [PICTURES]
+// usage: LF_BIN=build/release/bin node doc/figures/live_film.mjs FILM.webp [PICTURES]
 //
 // PICTURES  a folder that receives the single pictures
 //
@@ -12,8 +12,8 @@ import { execFileSync } from "node:child_process";
 import { mkdir, stat, writeFile } from "node:fs/promises";
 import { join, resolve } from "node:path";
 
-import { allLoaded, stillPicture } from "../web/test/page/live_case.mjs";
-import { openBrowser, openPage, run, serve, temporaryFolder, until } from "../web/test/page/visualizer.mjs";
+import { allLoaded, stillPicture } from "../../web/test/page/live_case.mjs";
+import { openBrowser, openPage, run, serve, temporaryFolder, until } from "../../web/test/page/visualizer.mjs";
 
 const VIEW = { width: 1000, height: 600 };
 const PER_SECOND = 8;
@@ -38,7 +38,7 @@ lens:
 `;
 
 const [film, kept] = process.argv.slice(2).map((name) => resolve(name));
-if (!film) throw new Error("usage: LF_BIN=build/release/bin node scripts/live_film.mjs FILM.webp [PICTURES]");
+if (!film) throw new Error("usage: LF_BIN=build/release/bin node doc/figures/live_film.mjs FILM.webp [PICTURES]");
 const { folder, remove } = await temporaryFolder();
 const browser = await openBrowser();
 const pictures = kept ?? join(folder, "pictures");

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs the commands of doc/gallery.md, and compares the pictures that they make with those in doc/images/.
 
-usage: scripts/gallery.py PROGRAMS [--write]
+usage: doc/figures/gallery.py PROGRAMS [--write]
 
 PROGRAMS  the folder of the programs, such as build/release/bin
 --write   replaces the pictures in doc/images/ instead
@@ -21,7 +21,7 @@ from PIL import Image, ImageSequence
 
 import page_commands
 
-ROOT = pathlib.Path(__file__).resolve().parents[1]
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGE, PICTURES = ROOT / "doc/gallery.md", ROOT / "doc/images"
 LARGEST_BYTES = 200_000
 LEAST_PSNR = 38.0  # other versions of encoders change pictures by less
@@ -44,7 +44,7 @@ def fault_of(made: pathlib.Path, kept: pathlib.Path):
     if made.stat().st_size > LARGEST_BYTES:
         return f"has {made.stat().st_size} bytes, the limit is {LARGEST_BYTES}"
     if not kept.exists():
-        return "is not in doc/images/: call scripts/gallery.py with --write"
+        return "is not in doc/images/: call doc/figures/gallery.py with --write"
     new, old = frames_of(made), frames_of(kept)
     if new.shape != old.shape:
         return f"has the shape {new.shape}, in doc/images/ {old.shape}"

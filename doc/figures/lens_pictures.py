@@ -19,6 +19,7 @@ import tempfile
 import cv2
 import numpy as np
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "bench/quality"))
 from lens_weights import linear_exr
 
 COUNT, SIZE, FOCUS, SEED = 441, (360, 240), 0.6, 5

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Makes man pages, completion for shells and a reference page from what the programs say of themselves.
 
-usage: scripts/program_pages.py FOLDER_OF_THE_PROGRAMS OUT NAME...
+usage: scripts/program_pages/program_pages.py FOLDER_OF_THE_PROGRAMS OUT NAME...
 
 Each program NAME is asked by its hidden option --describe (tools/common/describe.h). OUT receives
   programs.md                                 the reference page
@@ -117,7 +117,7 @@ def reference_page(descriptions):
     head = f"""# The programs and their options
 
 Find here every option of every program of lfrendertools {next(iter(descriptions.values()))['version']}, as `--help-all`
-shows it. This page is made when the programs are built (`scripts/program_pages.py`).
+shows it. This page is made when the programs are built (`scripts/program_pages/program_pages.py`).
 
 """
     lists = [f"- [`{call}`](#{call.replace(' ', '-')}): {description['summary']}"

@@ -3,9 +3,9 @@
 """Checks that frames stopped by --stop-when "noise<=X" have the requested noise, and that this noise equals their
 difference from frames of all LF images.
 
-usage: bench/noise_rule.py BUILD_DIR [--data ../shared] [--size 480x320] [--noise 0.012,0.009,...]
+usage: bench/quality/noise_rule.py BUILD_DIR [--data ../shared] [--size 480x320] [--noise 0.012,0.009,...]
                            [--only WAY,...] [--name NAME] [--write PAGE]
-       bench/noise_rule.py --again JSON [--write PAGE]
+       bench/quality/noise_rule.py --again JSON [--write PAGE]
 
 The light field is blender-shop with 729 LF images; most of its LF cameras are in the lens, which is 0.9 m wide. Three
 frames are focused on the foreground, the counter and the shelf behind it, and rendered in the ways of WAYS.
@@ -23,11 +23,13 @@ import math
 import pathlib
 import struct
 import subprocess
+import sys
 import tempfile
 
 import numpy as np
 import zstandard
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent))
 import record as results
 
 FOCUS = {"foreground": 6.3, "counter": 8.12, "shelf": 13}  # metres, see the data's README
@@ -178,7 +180,7 @@ def main():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path, nargs="?")
     parser.add_argument("--data", type=pathlib.Path,
-                        default=pathlib.Path(__file__).resolve().parent.parent / "../shared")
+                        default=pathlib.Path(__file__).resolve().parents[2] / "../shared")
     parser.add_argument("--size", default="480x320")
     parser.add_argument("--noise", default="0.024,0.018,0.014,0.011,0.009")
     parser.add_argument("--only", default=",".join(WAYS), help="ways, with commas between")
@@ -197,7 +199,7 @@ def main():
     ways = [f"{way} is `{' '.join(options)}`" for way, options in record["ways"].items()]
     text = "\n".join([results.sentence(record), f"Frames of {record['size'][0]} x {record['size'][1]}; "
                       + "; ".join(ways) + ".", ""] + table(record["rows"])) + "\n"
-    results.publish(arguments, "noise_rule.py", record, text)
+    results.publish(arguments, "quality/noise_rule.py", record, text)
 
 
 if __name__ == "__main__":

@@ -29,7 +29,7 @@ import cv2
 import numpy as np
 from PIL import Image
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "bench"))
+sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent))
 import record as results
 
 ALLOWED_LOSS_DB = 0.3
@@ -288,10 +288,10 @@ def main():
         parser.error("LFRENDERER GROUNDTRUTH or --again is needed")
     rows = record["rows"]
     if arguments.areas:
-        results.publish(arguments, "scripts/quality.py areas", record,
+        results.publish(arguments, "quality/quality.py areas", record,
                         "\n".join([results.sentence(record), ""] + table_of_areas(rows)) + "\n")
         return 0
-    results.publish(arguments, "scripts/quality.py", record,
+    results.publish(arguments, "quality/quality.py", record,
                     "\n".join([results.sentence(record), ""] + table(rows)) + "\n")
     faults = list(faults_of(rows))
     print("\n".join(faults) or f"{len(rows)} cases, none more than {ALLOWED_LOSS_DB} dB below")

@@ -113,7 +113,7 @@ def page_of(call, description, descriptions):
     """Returns the man page of a program, or of a command of one, such as "lffocus stack"."""
     name = call.replace(" ", "-")
     summary = description["summary"].rstrip(".")
-    text = f".\\\" Made by scripts/program_pages.py from {call} --describe.\n"
+    text = f".\\\" Made by scripts/program_pages/program_pages.py from {call} --describe.\n"
     text += f".TH {code(name.upper())} 1 \"{date()}\" \"lfrendertools {description['version']}\" \"User Commands\"\n"
     text += ".nh\n.ad l\n"  # without hyphens at the ends of lines, which could be part of a name
     text += f".SH NAME\n{code(name)} \\- {escaped(summary[0].lower() + summary[1:])}\n.SH SYNOPSIS\n"

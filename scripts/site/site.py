@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Makes the documentation site: the pages of the project, of the C++ library and of the Python package, as HTML.
 
-usage: scripts/site.py OUT [PROGRAMS.md]
+usage: scripts/site/site.py OUT [PROGRAMS.md]
 
 OUT          receives index.html and everything that it needs. Nothing in it is fetched from elsewhere, the search
              included: it can be read from a folder, from an archive, or from any server. Pages of an earlier call are
@@ -21,11 +21,12 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "house"))
 import site_library
 import site_pages
 import site_theme
 
-ROOT = pathlib.Path(__file__).resolve().parents[1]
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 NEEDED = {"sphinx": "python3-sphinx", "myst_parser": "python3-myst-parser", "furo": "furo",
           "sphinx_copybutton": "python3-sphinx-copybutton"}
 MISSING = 77

@@ -3,7 +3,7 @@
 import shlex
 
 # The functions that complete a word in bash. Neither the package bash-completion nor another program is needed.
-BASH = r"""# Completion of the programs of lfrendertools for bash, made by scripts/program_pages.py.
+BASH = r"""# Completion of the programs of lfrendertools for bash, made by scripts/program_pages/program_pages.py.
 
 # Sets `spec` to what the option or positional argument $2 of program $1 takes:
 #   flag, text, words WORD..., or files, then "/" if folders are values, then extensions (none: any).
@@ -264,7 +264,7 @@ def zsh(descriptions):
     functions = "".join(zsh_function(call, descriptions) for call in descriptions)
     cases = "".join(f"  {name}) _{name} ;;\n" for name in programs)
     return (f"#compdef {' '.join(programs)}\n"
-            "# Completion of the programs of lfrendertools for zsh, made by scripts/program_pages.py.\n"
+            "# Completion of the programs of lfrendertools for zsh, made by scripts/program_pages/program_pages.py.\n"
             f"{functions}case $service in\n{cases}esac\n")
 
 
@@ -327,7 +327,7 @@ def fish_lines(name, description, condition=""):
 def fish(name, descriptions):
     """Returns the completion of one program for fish."""
     description = descriptions[name]
-    lines = ["# Completion for fish, made by scripts/program_pages.py."]
+    lines = ["# Completion for fish, made by scripts/program_pages/program_pages.py."]
     calls = {command["name"]: command["call"] for command in description["commands"]}
     if not description["commands"]:
         rest = description["rest"]

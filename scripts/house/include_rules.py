@@ -1,15 +1,10 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Fails if a folder of lf/ includes what its lf_folder(... DEPENDS ...) does not allow, if a third-party header is
-included outside the folders that own it, if anything in lf/ or python/ includes tools/ or tests/, if anything but
-tools/ includes CLI11, or if rooms depend on each other in a cycle. A room is a folder directly in lf/, with the folders
-inside it. Also fails if a CMakeLists.txt outside of tools/ links CLI11 or compiles a source of tools/.
-
-usage: check_includes.py REPOSITORY
+"""Checks includes, for check_house.py: a folder of lf/ includes only what its lf_folder(... DEPENDS ...) allows, a
+third-party header is included only in the folders that own it, nothing in lf/ or python/ includes tools/ or tests/,
+nothing but tools/ includes CLI11, and rooms do not depend on each other in a cycle. A room is a folder directly in lf/,
+with the folders inside it. No CMakeLists.txt outside of tools/ links CLI11 or compiles a source of tools/.
 """
-import pathlib
 import re
-import sys
 
 import folder_list
 from folder_list import room_of
@@ -128,16 +123,11 @@ def room_faults(folders):
                    f"{room_of(folder)}, directly or through other rooms")
 
 
-def main() -> int:
-    root = pathlib.Path(sys.argv[1])
+def check_includes(root):
+    """Yields the faults of all folders of lf/."""
     folders = folder_list.read_folders(root)
-    sources = sorted(p for p in (root / "lf").rglob("*") if p.suffix in (".cc", ".h"))
-    faults = [*folder_faults(folders), *room_faults(folders), *other_faults(root)]
-    for source in sources:
-        faults += source_faults(root, source, folders)
-    print("\n".join(faults) or f"{len(sources)} files, no forbidden include")
-    return 1 if faults or not sources else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    yield from folder_faults(folders)
+    yield from room_faults(folders)
+    yield from other_faults(root)
+    for source in sorted(path for path in (root / "lf").rglob("*") if path.suffix in (".cc", ".h")):
+        yield from source_faults(root, source, folders)

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """States the licence in the first lines of every source: one line, in the comment form of the language.
 
-usage: scripts/licence_headers.py --check [REPOSITORY]    prints the files whose line is missing or wrong; exits with 1
-                                                          if there are some
-       scripts/licence_headers.py --write [REPOSITORY]    adds the missing lines, and prints how many
+usage: scripts/house/licence_headers.py --write [REPOSITORY]    adds the missing lines, and prints how many
+
+The check `licences` of check_house.py names the files whose line is missing or wrong.
 
 The line is the first of its file, but follows the line of the interpreter (#!) and the <!doctype> of a page, which must
 be first. The comment that says what the file is follows it. The copyright of all files, and the licence of files that
@@ -15,8 +15,8 @@ import pathlib
 import re
 import sys
 
-import check_house
 import comment_rules
+from repository_files import text_lines, tracked_files
 
 LICENCE = f"{comment_rules.LICENCE_TAG} Apache-2.0"
 SLASHES, HASH, STAR, MARKUP = "// {}", "# {}", "/* {} */", "<!-- {} -->"
@@ -59,7 +59,7 @@ def fault_of(name: str, lines):
     """Returns (line number, fault) of a file, or None."""
     form = comment_form(name, lines)
     if form == "":
-        return 1, "unknown type of file: list it in scripts/licence_headers.py"
+        return 1, "unknown type of file: list it in scripts/house/licence_headers.py"
     if form is None or not lines:
         return None
     for number, line in enumerate(lines, 1):
@@ -68,7 +68,7 @@ def fault_of(name: str, lines):
     place, expected = place_of(lines), form.format(LICENCE)
     found = [number for number, line in enumerate(lines, 1) if line == expected]
     if found != [place + 1]:
-        return place + 1, f"expected '{expected}' here and nowhere else: scripts/licence_headers.py --write"
+        return place + 1, f"expected '{expected}' here and nowhere else: scripts/house/licence_headers.py --write"
     return None
 
 
@@ -76,7 +76,7 @@ def faults_of(root, files):
     """Yields the faults of all files."""
     for path in files:
         name = path.relative_to(root).as_posix()
-        fault = fault_of(name, check_house.text_lines(path))
+        fault = fault_of(name, text_lines(path))
         if fault:
             yield f"{name}:{fault[0]}: {fault[1]}"
 
@@ -100,21 +100,13 @@ def write(path: pathlib.Path, name: str) -> bool:
 
 
 def main() -> int:
-    if len(sys.argv) not in (2, 3) or sys.argv[1] not in ("--check", "--write"):
+    if len(sys.argv) not in (2, 3) or sys.argv[1] != "--write":
         print(__doc__, file=sys.stderr)
         return 2
     root = pathlib.Path(sys.argv[2] if len(sys.argv) == 3 else __file__.rpartition("/scripts/")[0] or ".")
-    files = check_house.tracked_files(root)
-    if not files:
-        print(f"{root}: no files", file=sys.stderr)
-        return 1
-    if sys.argv[1] == "--write":
-        changed = sum(write(path, path.relative_to(root).as_posix()) for path in files)
-        print(f"{changed} files changed")
-        check_house.text_lines.cache_clear()
-    faults = list(faults_of(root, files))
-    print("\n".join(faults) or f"{len(files)} files, no fault")
-    return 1 if faults else 0
+    changed = sum(write(path, path.relative_to(root).as_posix()) for path in tracked_files(root))
+    print(f"{changed} files changed")
+    return 0
 
 
 if __name__ == "__main__":

@@ -27,5 +27,5 @@ def rows(root):
     for name, page, statement, source, words in FORMATS:
         found = re.search(re.escape(words) + r"\s*(\d+)", (root / source).read_text())
         if not found:
-            raise ValueError(f"{source} has no version behind '{words}' (scripts/format_versions.py)")
+            raise ValueError(f"{source} has no version behind '{words}' (scripts/house/format_versions.py)")
         yield [f"[{name}]({page})", found[1], statement.format(found[1])]

@@ -2,12 +2,12 @@
 // Makes doc/images/visualizer.jpg, a picture of the page of lfvisualizer that shows an LF image. Needs Chromium and
 // ffmpeg, and the packages of web/.
 //
-// usage: LF_BIN=build/release/bin node scripts/page_picture.mjs PICTURE.jpg
+// usage: LF_BIN=build/release/bin node doc/figures/page_picture.mjs PICTURE.jpg
 import { execFileSync } from "node:child_process";
 import { writeFile } from "node:fs/promises";
 import { resolve } from "node:path";
 
-import { openBrowser, openPage, run, serve, temporaryFolder, until } from "../web/test/page/visualizer.mjs";
+import { openBrowser, openPage, run, serve, temporaryFolder, until } from "../../web/test/page/visualizer.mjs";
 
 const PATH = `format: lfpath 1
 fps: 24
@@ -27,7 +27,7 @@ keyframes:
 `;
 
 const [picture] = process.argv.slice(2).map((name) => resolve(name));
-if (!picture) throw new Error("usage: LF_BIN=build/release/bin node scripts/page_picture.mjs PICTURE.jpg");
+if (!picture) throw new Error("usage: LF_BIN=build/release/bin node doc/figures/page_picture.mjs PICTURE.jpg");
 const { folder, remove } = await temporaryFolder();
 const browser = await openBrowser();
 process.chdir(folder); // so that the page shows short names

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Draws the figures of doc/how-it-works.md.
 
-usage: scripts/explain_figures.py FOLDER
+usage: doc/figures/explain_figures.py FOLDER
 
 FOLDER  receives how_lens.svg, how_capture.svg, how_focus.svg, how_weights.svg and how_rebinning.svg. Every ray is
         computed.

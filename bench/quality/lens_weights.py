@@ -105,7 +105,7 @@ class Table:
         record |= {"columns": list(self.columns), "rows": self.rows}
         text = [results.sentence(record), "", line(self.columns), "| --- " * len(self.columns) + "|",
                 *map(line, self.rows)]
-        results.publish(arguments, f"scripts/{words}", record, "\n".join(text) + "\n")
+        results.publish(arguments, f"quality/{words}", record, "\n".join(text) + "\n")
 
 
 def publish_again(arguments):
@@ -113,7 +113,7 @@ def publish_again(arguments):
     record = json.loads(arguments.again.read_text())
     table = Table(*record["columns"])
     table.rows = record["rows"]
-    table.publish(arguments, record["table"].removeprefix("scripts/"), record)
+    table.publish(arguments, record["table"].removeprefix("bench/quality/"), record)
 
 
 def captures(case, frames):

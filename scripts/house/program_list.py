@@ -1,15 +1,11 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
 """Reads the list of the programs, tools/common/programs.h, which scripts and tests take instead of lists of their own.
-
-usage: scripts/program_list.py REPOSITORY    prints the places that lack a program, and exits with 1 if there are any
 
 Each place of PLACES has words of its own for a program, such as its target or a call. It must name every program.
 """
 import ast
 import pathlib
 import re
-import sys
 
 LIST = "tools/common/programs.h"
 STRING = r'"(?:[^"\\]|\\.)*"'
@@ -45,16 +41,3 @@ def missing(root: pathlib.Path):
                 yield f"{place}: has no {name}, which {LIST} lists: add {what}"
         for name in sorted(name for name in found - set(programs) if name.startswith("lf")):
             yield f"{place}: names {name}, which {LIST} does not list"
-
-
-def main() -> int:
-    if len(sys.argv) != 2:
-        print(__doc__, file=sys.stderr)
-        return 2
-    faults = list(missing(pathlib.Path(sys.argv[1])))
-    print("\n".join(faults) or "every place has every program")
-    return 1 if faults else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
