@@ -36,7 +36,7 @@ endfunction()
 # fuzz targets without libFuzzer. Release builds optimise unit tests less than what they test, which saves a third of the
 # time that the tests take to build.
 if(LF_TESTS)
-  add_library(lf_unit_main STATIC ${PROJECT_SOURCE_DIR}/tests/unit_main.cc)
+  add_library(lf_unit_main STATIC ${PROJECT_SOURCE_DIR}/tests/helpers/unit_main.cc)
   target_link_libraries(lf_unit_main PUBLIC GTest::gtest PRIVATE lf_options)
   target_compile_options(lf_unit_main INTERFACE $<$<CONFIG:Release>:-O1>)
   add_library(lf_replay_main STATIC ${PROJECT_SOURCE_DIR}/fuzz/replay_main.cc)
@@ -87,9 +87,9 @@ endfunction()
 
 # lf_program_test(tests.name word... [SCRIPT file] [SLOW] [LABELS label...])
 #
-# A test of whole programs: the Python script <name>_test.py of this folder. A word that names a target is replaced by
-# the path of its file; PROGRAMS, by the folder of all programs. The time limit is 900 s, that of a SLOW
-# test 3600 s. LABELS are those besides program and slow.
+# A test of whole programs: the Python script <name>_test.py in one of the folders of tests/, which tests/run_test.py
+# runs, or the script of SCRIPT. A word that names a target is replaced by the path of its file; PROGRAMS, by the folder
+# of all programs. The time limit is 900 s, that of a SLOW test 3600 s. LABELS are those besides program and slow.
 function(lf_program_test name)
   cmake_parse_arguments(P "SLOW" "SCRIPT" "LABELS" ${ARGN})
   set(words "")
@@ -105,8 +105,11 @@ function(lf_program_test name)
       list(APPEND words ${word})
     endif()
   endforeach()
-  if(NOT P_SCRIPT)
-    string(REGEX REPLACE "^tests\\.(.*)" "\\1_test.py" P_SCRIPT ${name})
+  if(P_SCRIPT)
+    cmake_path(ABSOLUTE_PATH P_SCRIPT BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} NORMALIZE)
+  else()
+    string(REGEX REPLACE "^tests\\." "" P_SCRIPT ${name})
+    set(P_SCRIPT ${CMAKE_CURRENT_SOURCE_DIR}/run_test.py ${P_SCRIPT})
   endif()
   set(timeout 900)
   set(cost 10)  # what costs most begins first, so that no processor waits for a last long test
@@ -115,7 +118,6 @@ function(lf_program_test name)
     set(cost 100)
     list(APPEND P_LABELS slow)
   endif()
-  cmake_path(ABSOLUTE_PATH P_SCRIPT BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} NORMALIZE)
   lf_test(${name} COMMAND ${Python3_EXECUTABLE} ${P_SCRIPT} ${words} LABELS program ${P_LABELS}
           TIMEOUT ${timeout} NEEDS ${needs})
   set_tests_properties(${name} PROPERTIES COST ${cost})

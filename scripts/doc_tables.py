@@ -119,7 +119,7 @@ def offered_by(option, offered):
 
 
 def common_options(root):
-    lists = runpy.run_path(str(root / "tests/common_options.py"))
+    lists = runpy.run_path(str(root / "tests/helpers/common_options.py"))
     return table(["option", "offered by", "effect"],
                  [[code(shown), offered_by(option, lists["OFFERED"]), effect]
                   for option, (shown, effect) in lists["COMMON"].items()])

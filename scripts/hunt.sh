@@ -50,16 +50,16 @@ valgrind() { # every program once under valgrind
   scripts/valgrind.sh $release
 }
 faults() { # five calls of each kind and file fail, in every program
-  $python tests/faults_test.py $release/tests/libfault_shim.so $bin --points 5
+  $python tests/run_test.py faults $release/tests/libfault_shim.so $bin --points 5
 }
 environment() { # many limits of memory, files, processes and disks for every program, and many odd names
-  $python tests/environment_test.py $bin --all
+  $python tests/run_test.py environment $bin --all
 }
 power() { # the power fails after every step of every writer
-  $python tests/power_failure_test.py $release/tests/libwritten_log.so $bin --points 0
+  $python tests/run_test.py power_failure $release/tests/libwritten_log.so $bin --points 0
 }
 databases() { # every value of every column of a package and of a store, and a thousand damages of each
-  $python tests/hostile_databases_test.py $bin/{lfrenderer,lfpreprocessor,lfcompressor,lfimport} --all
+  $python tests/run_test.py hostile_databases $bin/{lfrenderer,lfpreprocessor,lfcompressor,lfimport} --all
 }
 matrix() { # cells of doc/matrix.md that cover all combinations of any three axes
   $python scripts/matrix.py $bin --strength 3

@@ -25,7 +25,10 @@ import tempfile
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "bench")]
+sys.path.append(str(ROOT / "tests"))
+import run_test
+
+run_test.add_rooms()
 
 import defaults
 import record

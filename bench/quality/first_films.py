@@ -32,7 +32,10 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "tests")]
+sys.path.append(str(ROOT / "tests"))
+import run_test
+
+run_test.add_rooms()
 
 from judgements import focus, scenes
 from printed_commands import COMMAND

@@ -12,7 +12,7 @@ STRING = r'"(?:[^"\\]|\\.)*"'
 ENTRY = re.compile(rf'ListedProgram\{{\s*"(\w+)",\s*"\w+",\s*((?:{STRING}\s*)+)\}}')
 # File: the pattern that matches a program there, and what must be added for a new one.
 PLACES = {"tools/CMakeLists.txt": (r"^lf_tool\((\w+)", "its target"),
-          "tests/common_options.py": (r'^    "(\w+)":', "the common options that it offers"),
+          "tests/helpers/common_options.py": (r'^    "(\w+)":', "the common options that it offers"),
           "scripts/valgrind.sh": (r"^ *check (\w+)", "a call of it")}
 
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A preload library that makes one system call or allocation fail: the k-th of a kind, on files
-// whose path contains a word. tests/faults_test.py judges what programs then do. For Linux and
+// whose path contains a word. tests/faults/faults_test.py judges what programs then do. For Linux and
 // glibc; one fault per process.
 //
 //   FAULT_PROGRAM  only in the program of this name

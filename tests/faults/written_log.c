@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A preload library that logs what a disk is told: names that are made, renamed and removed, and
-// the content of files when they are flushed. tests/power_failure_test.py replays the log. For
+// the content of files when they are flushed. tests/faults/power_failure_test.py replays the log. For
 // Linux and glibc.
 //
 //   WRITTEN_PATH  only paths that contain this word

@@ -12,7 +12,6 @@ import subprocess
 import sys
 import unittest
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "bench"))
 import defaults
 import small_field
 from common_options import COMMON, OFFERED

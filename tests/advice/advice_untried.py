@@ -2,8 +2,8 @@
 """Messages that recommend a command or an option and that advice_test.py does not provoke, each with the reason."""
 MEMORY = "needs a machine without memory or threads"
 TOO_SHORT = "needs an interruption within milliseconds; the tests of the program interrupt larger calls and resume them"
-SCRIPT = "a script or a template for a farm, which tests/farms_test.py and tests/slurm_test.py run"
-SLURM = "needs Slurm; tests/slurm_test.py calls its programs"
+SCRIPT = "a script or a template for a farm, which farms_test.py and slurm_test.py run"
+SLURM = "needs Slurm; slurm_test.py calls its programs"
 HELP = "is no message: a text of the help, or the name of a command"
 BEFORE = "is the library's own check, for Python and C++; the options of the programs are checked before"
 CAPTURE = "needs a capture of another kind: "
@@ -46,11 +46,11 @@ UNTRIED = {
     "render_pass: make --r-st or --r-uv smaller": CAPTURE + "millions of rays in one cell",
     "display_view: this program was built without OpenColorIO": "depends on how the programs were built",
     "page_server: or use --text": "depends on how the programs were built",
-    "page_port: or --serve 0 for any free port": "serves until it is interrupted; tests/lfvisualizer_test.py does it",
-    "orbit: or let the camera stand (--move focus-pull)": CAPTURE + "a bent one; tests/lfexample_test.py has it",
+    "page_port: or --serve 0 for any free port": "serves until it is interrupted; lfvisualizer_test.py does it",
+    "orbit: or let the camera stand (--move focus-pull)": CAPTURE + "a bent one; lfexample_test.py has it",
     "example_path: (lfdensify, or lfrenderer --densify), or record more": CAPTURE + "a sparse one of a deep scene",
-    "view_grid: LF cameras look up to {:.0f} degrees": CAPTURE + "cameras around a subject; tests/focus_views_test.py",
-    "camera_plane: densify each side by itself": CAPTURE + "cameras around a subject; tests/lfdensify_test.py has it",
+    "view_grid: LF cameras look up to {:.0f} degrees": CAPTURE + "cameras around a subject; focus_views_test.py",
+    "camera_plane: densify each side by itself": CAPTURE + "cameras around a subject; lfdensify_test.py has it",
     "open_light_field: or import with lfimport --bayer RGGB": CAPTURE + "camera raw files without a pattern",
     "read_stanford: correct --pitch, or the position": CAPTURE + "positions beyond 1e12 world units",
     "ngp_path: give their number (lfpath --frames)": CAPTURE + "a path of instant-ngp of many hours",

@@ -13,10 +13,10 @@ from printed_commands import PROGRAMS, save_photograph
 COMMANDS = ("stack", "depth", "sharp", "through", "epi", "views")
 # Examples that are not run, each with the reason. A key is the beginning of the example.
 NOT_RUN = {
-    "lfsynth": "makes hundreds of large images; tests/lfsynth_test.py makes few and small ones",
+    "lfsynth": "makes hundreds of large images; lfsynth_test.py makes few and small ones",
     "lfexample capture/transforms.json -o orbit.yaml --move orbit --camera 364": "needs 365 LF cameras",
     "lfsubmit packages/*.lfp -o film --engine slurm": "needs Slurm",
-    "lfdensify capture/": "needs a sparse capture of things at several depths; tests/lfdensify_test.py has it",
+    "lfdensify capture/": "needs a sparse capture of things at several depths; lfdensify_test.py has it",
 }
 # Servers, which Ctrl-C ends.
 SERVES = re.compile(r"lfvisualizer (?!.*(--export|--text))")

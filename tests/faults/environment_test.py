@@ -27,6 +27,7 @@ import sys
 import tempfile
 
 import odd_places
+import run_test
 from final_files import faults_of_finals, faults_of_going_on, faults_of_status, faults_of_success, files_of, last_line
 from tiny_calls import TinyCalls
 
@@ -272,8 +273,8 @@ class Environments:
         if not words:
             print("disk: skipped: nothing may be mounted here")
             return
-        again = [*words[0].split(), sys.executable, __file__, str(self.arguments.programs), "--part", "disk",
-                 "--only", self.arguments.only]
+        again = [*words[0].split(), sys.executable, run_test.__file__, __file__, str(self.arguments.programs),
+                 "--part", "disk", "--only", self.arguments.only]
         again += ["--all"] * self.arguments.all + ["--say"] * self.arguments.say
         done = subprocess.run(again, env={**os.environ, "LF_OWN_MOUNTS": "1"}, check=False, text=True,
                               stdout=subprocess.PIPE)

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "tests/analytic_field.h"
+#include "tests/optics/analytic_field.h"
 
 #include "lf/light_field/synthetic/built_in_scenes.h"
 #include "lf/light_field/synthetic/photograph.h"

@@ -26,7 +26,7 @@ WritersCase.programs = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".")
 
 NO_FILES = "it writes no files"
 NO_RESUME = "it has no --resume"
-# Programs whose two writers are not raced (tests/writers_test.py).
+# Programs whose two writers are not raced (tests/faults/writers_test.py).
 NOT_RACED = {"lfcammvminfo": NO_FILES, "lffocus": "its commands are"}
 # Programs of which no finished result is resumed with other inputs.
 NOT_RESUMED = dict.fromkeys(["lfsynth", "lfimport", "lfexample", "lfcammvminfo", "lfpath", "lfpreprocessor",

@@ -22,7 +22,7 @@ import numpy as np
 
 from program_test_case import ProgramTestCase, wait_until
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "blender" / "lfrendertools_blender"))
 import rig
 
@@ -54,7 +54,8 @@ ALLOWED_PX = 0.05
 
 def scene_of(job, **arguments):
     """Runs a job of blender_scene.py."""
-    result = subprocess.run([BLENDER, "-b", "--factory-startup", "--python", ROOT / "tests" / "blender_scene.py", "--",
+    result = subprocess.run([BLENDER, "-b", "--factory-startup", "--python",
+                             ROOT / "tests/helpers/blender_scene.py", "--",
                              job, json.dumps(arguments)], capture_output=True, text=True, timeout=800)
     if result.returncode:
         raise RuntimeError(result.stderr)

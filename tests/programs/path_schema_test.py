@@ -128,7 +128,7 @@ def example_paths():
     for page in sorted(SOURCE.glob("doc/**/*.md")):
         for number, block in enumerate(re.findall(r"```yaml\n(.*?)```", page.read_text(), re.S)):
             yield f"{page.name} {number}", block, page.parent
-    for script in sorted(SOURCE.glob("tests/*.py")) + sorted(SOURCE.glob("python/tests/*.py")):
+    for script in sorted(SOURCE.glob("tests/**/*.py")) + sorted(SOURCE.glob("python/tests/*.py")):
         for number, block in enumerate(re.findall(r'"""(format: lfpath 1\n.*?)"""', script.read_text(), re.S)):
             yield f"{script.name} {number}", block, script.parent
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The common options, and the programs that offer them.
 
-tests/program_options_test.py compares the lists with the programs. scripts/doc_tables.py makes the table of
+tests/programs/program_options_test.py compares the lists with the programs. scripts/doc_tables.py makes the table of
 doc/design.md of them.
 """
 # How a page shows each option, and the effect of the option.

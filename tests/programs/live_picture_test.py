@@ -13,7 +13,6 @@ os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"  # must be set before cv2 is import
 import cv2
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "bench"))
 from live_pictures import LiveServer
 from program_test_case import ProgramTestCase
 

@@ -2,14 +2,10 @@
 """Finds the messages in the sources that advise something: a command of ours, or an option that mends a call."""
 import pathlib
 import re
-import sys
-
-ROOT = pathlib.Path(__file__).resolve().parent.parent
-sys.path.append(str(ROOT / "scripts/house"))
 
 import program_list
 
-PROGRAMS = program_list.names(ROOT)
+PROGRAMS = program_list.names(pathlib.Path(__file__).resolve().parents[2])
 TOKEN = re.compile(r'//[^\n]*|R"\((?P<raw>.*?)\)"|(?P<words>"(?:[^"\\\n]|\\.)*"(?:\s*"(?:[^"\\\n]|\\.)*")*)|'
                    r"'(?:[^'\\\n]|\\.)+'", re.S)
 WORD = re.compile(r'"((?:[^"\\\n]|\\.)*)"')

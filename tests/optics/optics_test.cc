@@ -2,7 +2,7 @@
 // Tests properties of a thin lens, from the pixels of LF images to the sensor plate.
 #include <gtest/gtest.h>
 
-#include "tests/analytic_field.h"
+#include "tests/optics/analytic_field.h"
 
 #include "lf/camera/thin_lens.h"
 

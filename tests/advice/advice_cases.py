@@ -20,7 +20,7 @@ import dataclasses
 import pathlib
 import re
 
-FOLDER = pathlib.Path(__file__).parent / "advice"
+FOLDER = pathlib.Path(__file__).parent
 LINE = re.compile(r"(?:(before)|(call|then)(?: (\d))?): (.*)")
 
 

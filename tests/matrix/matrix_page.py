@@ -4,7 +4,7 @@ import pathlib
 import re
 from typing import NamedTuple
 
-PAGE = pathlib.Path(__file__).resolve().parent.parent / "doc" / "matrix.md"
+PAGE = pathlib.Path(__file__).resolve().parents[2] / "doc" / "matrix.md"
 AXES = ("field", "input", "cut", "mode", "run")
 
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tests that a packed store is a light field: every program accepts it and renders the same bits.
 
-usage: packed_store_test.py LFCOMPRESSOR LFRENDERER LFPREPROCESSOR LFIMPORT LFEXAMPLE
+usage: packed_stores_test.py LFCOMPRESSOR LFRENDERER LFPREPROCESSOR LFIMPORT LFEXAMPLE
 """
 import hashlib
 import json

@@ -322,7 +322,7 @@ enum class ErrorKind {
     def test_no_program_is_forgotten(self):
         self.plant("tools/common/programs.h", 'ListedProgram{"lfone", "one", "Does one thing."},\n')
         self.plant("tools/CMakeLists.txt", "lf_tool(lfr)\nlf_tool(lfone LIBS x)\n")
-        self.plant("tests/common_options.py", 'OFFERED = {\n    "lfone": {"-q"},\n    "lfr": set(),\n}\n')
+        self.plant("tests/helpers/common_options.py", 'OFFERED = {\n    "lfone": {"-q"},\n    "lfr": set(),\n}\n')
         self.plant("scripts/valgrind.sh", "check lfone --list\ncheck lfr one --list\n")
         self.expect("check_house.py", "programs", faults=[])
         self.plant("scripts/valgrind.sh", "check lfr one --list\n")
@@ -337,8 +337,9 @@ enum class ErrorKind {
         self.plant("tools/common/programs.h", 'ListedProgram{"lftwo", "two",\n  "Does "\n  "two."},\n')
         self.plant("tools/lftwo.cc", '.summary = lf::SummaryOf("lftwo"),\n'
                    '.usage = R"(  lftwo A -o B [OPTIONS]\n  lftwo C)",\n')
-        self.plant("tests/common_options.py", 'COMMON = {"-q": ("-q A|B", "no words"), "-v": ("-v", "more")}\n'
-                                              'OFFERED = {"lfone": {"-q", "-v"}, "lftwo": {"-v"}}\n')
+        self.plant("tests/helpers/common_options.py",
+                   'COMMON = {"-q": ("-q A|B", "no words"), "-v": ("-v", "more")}\n'
+                   'OFFERED = {"lfone": {"-q", "-v"}, "lftwo": {"-v"}}\n')
         programs = ("| program | what it does | call |\n| --- | --- | --- |\n"
                     "| `lfone` | Does one thing | `lfone A\\|B` |\n"
                     "| `lftwo` | Does two | `lftwo A -o B`, `lftwo C` |\n")
