@@ -19,6 +19,7 @@
 #include "tools/common/validators.h"
 
 #include "lf/core/quantities.h"
+#include "lf/core/spelling.h"
 #include "lf/core/version.h"
 #include "lf/distribute/preprocess/forecast_report.h"
 #include "lf/distribute/preprocess/known_depths.h"
@@ -204,7 +205,8 @@ std::string NextOf(const Arguments& a, const lf::PreprocessReport& report) {
     if (value != otherwise) options.insert(options.end(), {option, value});
   };
   for (const char* key : {"mode", "lens_weights", "estimator"})
-    repeat(lf::OptionOf(key), a.settings.Word(key), lf::FindSetting(key)->get(lf::FilmSettings()));
+    repeat(lf::CommandLineOption({key}), a.settings.Word(key),
+           lf::FindSetting(key)->get(lf::FilmSettings()));
   const Arguments usual;
   repeat("--memory", a.memory, usual.memory);
   repeat("--allow-missing", a.allow_missing.text, usual.allow_missing.text);

@@ -21,6 +21,7 @@
 
 #include "lf/core/log.h"
 #include "lf/core/quantities.h"
+#include "lf/core/spelling.h"
 #include "lf/import/paths/open_path.h"
 #include "lf/render/state/record_fields.h"
 #include "lf/view/scene_text.h"
@@ -192,7 +193,7 @@ void WarnOfDisagreement(const Arguments& a, const std::atomic<bool>& interrupted
   const lf::Result<lf::Disagreement> found =
       lf::FindDisagreement(scene->light_field(), a.light_field, pool, &interrupted);
   if (!found || found->text.empty()) return;
-  const std::string warning = fmt::format("{}. {}", found->text, found->advice);
+  const std::string warning = lf::Spelled(fmt::format("{}. {}", found->text, found->advice));
   lf::LogWarning("{}", warning);
   scene->events().Post("poses", lf::RecordLine({{"warning", warning}}));
 }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "lf/core/parallel.h"
+#include "lf/core/spelling.h"
 #include "lf/core/version.h"
 #include "lf/import/paths/focal_surface_file.h"
 #include "lf/import/paths/open_path.h"
@@ -13,7 +14,7 @@
 
 namespace lf {
 int Report(const Error& error) {
-  std::fprintf(stderr, "error: %s\n", error.message.c_str());
+  std::fprintf(stderr, "error: %s\n", Spelled(error.message).c_str());
   return static_cast<int>(error.kind);
 }
 

@@ -19,7 +19,8 @@
 
 namespace lf {
 
-// Prints "error: " and the message to stderr. Returns the exit code of the error (ErrorKind).
+// Prints "error: " and the message to stderr, with the members of settings by their keys (Spelled()
+// in lf/core/spelling.h). Returns the exit code of the error (ErrorKind).
 int Report(const Error& error);
 
 // Opens any LIGHTFIELD: a calibration, a folder that holds one, or a packed store (doc/inputs.md).

@@ -5,6 +5,8 @@
 #include <mutex>
 #include <string>
 
+#include "lf/core/spelling.h"
+
 namespace lf {
 namespace {
 
@@ -52,13 +54,13 @@ void LogMessage(LogLevel level, std::string_view message) {
   if (receiver != nullptr) {
     const LogReceiver receive = receiver;
     lock.unlock();  // the receiver may wait for a thread that sends a message itself
-    return receive(level, OneLine(message));
+    return receive(level, OneLine(Spelled(message)));
   }
   ClearLine();
   const char* prefix = level == LogLevel::kWarning ? "warning: "
                        : level == LogLevel::kError ? "error: "
                                                    : "";
-  std::fputs(fmt::format("{}{}\n", prefix, OneLine(message)).c_str(), stderr);
+  std::fputs(fmt::format("{}{}\n", prefix, OneLine(Spelled(message))).c_str(), stderr);
   std::fflush(stderr);
 }
 

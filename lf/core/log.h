@@ -28,7 +28,8 @@ void SetLogReceiver(LogReceiver receiver);
 std::string OneLine(std::string_view text);
 
 // Writes the message in one line (OneLine()), after "warning: " or "error: " if `level` is kWarning
-// or kError. Clears a line in progress (a progress bar) first. Thread-safe.
+// or kError, with its options as the reader knows them (Spelled()). Clears a line in progress (a
+// progress bar) first. Thread-safe.
 void LogMessage(LogLevel level, std::string_view message);
 
 // Replaces the line in progress on a terminal; "" clears it. For progress bars.

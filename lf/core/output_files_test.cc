@@ -38,9 +38,9 @@ TEST_F(OutputFilesTest, TwoNamesOfOneFileAreRefused) {
   fs::create_directory_symlink(folder_ / "a", folder_ / "link");
   const std::vector<OutputFile> twice = {
       {folder_ / "a" / "x.exr", "a frame"},
-      {folder_ / "link" / "." / "x.exr", "the video", "--video"}};
+      {folder_ / "link" / "." / "x.exr", "the video", "{video}"}};
   EXPECT_NE(Refusal(twice).find("x.exr: would be written as a frame and as the video: give another "
-                                "--video"),
+                                "{video}"),
             std::string::npos)
       << Refusal(twice);
   Written("a/x.exr");

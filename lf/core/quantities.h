@@ -11,7 +11,7 @@
 namespace lf {
 
 // The first three functions return kUsage if the text is no such quantity; the message begins with
-// `name`, such as "--memory", and states the text and what was expected.
+// `name`, such as "{memory}", and states the text and what was expected.
 
 // Returns a number of bytes, such as of "8G", "512M", "1.5g" or "100000". The units K, M, G and T
 // are powers of 1024. The size must be in [1, 2^60) bytes.

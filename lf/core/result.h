@@ -35,7 +35,9 @@ enum class ErrorKind {
   kBelowRequired = 6,
 };
 
-// The message names file, line or entry, the value found, what was expected and what to do.
+// The message names file, line or entry, the value found, what was expected and what to do. It
+// names options by their keys, such as {max_images}; whoever shows it to a person spells them
+// (lf/core/spelling.h).
 struct Error {
   ErrorKind kind = ErrorKind::kInput;
   std::string message;

@@ -8,6 +8,8 @@
 
 #include "lf/core/quantities.h"
 
+#include "lf/core/spelling.h"
+
 namespace lf {
 namespace {
 
@@ -30,7 +32,7 @@ std::string DensifyText(const DensifyReport& report, const DensifyOptions& optio
       DepthText(report.range.greatest), DepthText(report.range.least), report.planes,
       report.shift_px, report.distance_w, report.spacing_px);
   for (const DensifyReport::Skipped& skipped : report.skipped)
-    text += fmt::format("skipped   {}: {}\n", skipped.name, skipped.reason);
+    text += fmt::format("skipped   {}: {}\n", skipped.name, Spelled(skipped.reason));
   if (report.was_there) return text + "existed already: nothing was written\n" + next;
   if (report.spacing_px > options.choices.spacing_px * 1.001)
     text += fmt::format("note: {:.2g} px need more virtual LF images than --most allows\n",
@@ -67,7 +69,7 @@ std::string DensifyJson(const DensifyReport& report, const DensifyOptions& optio
                      {"angle_deg", test.angle_deg}});
   nlohmann::ordered_json skipped = nlohmann::ordered_json::array();
   for (const DensifyReport::Skipped& image : report.skipped)
-    skipped.push_back({{"lf_image", image.name}, {"reason", image.reason}});
+    skipped.push_back({{"lf_image", image.name}, {"reason", Spelled(image.reason)}});
   const nlohmann::ordered_json json = {
       {"store", options.store.string()},
       {"existed", report.was_there},

@@ -23,6 +23,7 @@
 #include "lf/analysis/focus_stack/focus_planes.h"
 #include "lf/analysis/views/render_views.h"
 #include "lf/core/quantities.h"
+#include "lf/core/spelling.h"
 #include "lf/light_field/model/capture_geometry.h"
 
 namespace lf::python {
@@ -65,7 +66,7 @@ py::tuple Epi(const OpenedField& field, bool is_row, int pixel, uint32_t through
       &signals);
   std::vector<uint32_t> ids;
   for (const LfImageId id : picture.ids) ids.push_back(id.value);
-  std::vector<std::string> reasons(picture.missing.size(), picture.first_reason);
+  std::vector<std::string> reasons(picture.missing.size(), Spelled(picture.first_reason));
   return py::make_tuple(ArrayOf(std::move(picture.light)), picture.positions_w, ids,
                         static_cast<int>(picture.lines), picture.focal_px,
                         picture.line.direction_world, picture.line.rotation, reasons);

@@ -18,6 +18,7 @@
 
 #include "lf/analysis/depth/depth_map.h"
 #include "lf/core/quantities.h"
+#include "lf/core/spelling.h"
 #include "lf/render/pipeline/develop_frame.h"
 #include "lf/selection/image_index.h"
 
@@ -61,7 +62,8 @@ py::tuple MakeMap(const OpenedField& field, const RenderCamera& camera,
       },
       &signals);
   std::vector<std::pair<std::string, std::string>> skipped;
-  for (const SkippedImage& image : map.skipped) skipped.emplace_back(image.name, image.reason);
+  for (const SkippedImage& image : map.skipped)
+    skipped.emplace_back(image.name, Spelled(image.reason));
   return py::make_tuple(ArrayOf(std::move(map.depth_w), true),
                         ArrayOf(std::move(map.confidence), true),
                         ArrayOf(std::move(map.filled_w), true), ArrayOf(std::move(picture.rgb)),

@@ -3,6 +3,8 @@
 
 #include <new>
 
+#include "lf/core/spelling.h"
+
 namespace lf::python {
 namespace {
 
@@ -26,7 +28,7 @@ const char* ExceptionOf(ErrorKind kind) {
 
 void Raise(const Error& error) {
   const py::object type = py::module_::import("lfrendertools.errors").attr(ExceptionOf(error.kind));
-  PyErr_SetObject(type.ptr(), TextOf(error.message).ptr());
+  PyErr_SetObject(type.ptr(), TextOf(Spelled(error.message)).ptr());
 }
 
 }  // namespace

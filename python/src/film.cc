@@ -20,6 +20,7 @@
 #include "python/src/work.h"
 
 #include "lf/core/quantities.h"
+#include "lf/core/spelling.h"
 #include "lf/core/version.h"
 #include "lf/pixels/files/write_png.h"
 #include "lf/render/pipeline/film_renderer.h"
@@ -159,7 +160,7 @@ class Film {
   py::list Skipped() {
     py::list skipped;
     for (const SkippedImage& image : renderer().skipped())
-      skipped.append(py::make_tuple(TextOf(image.name), TextOf(image.reason)));
+      skipped.append(py::make_tuple(TextOf(image.name), TextOf(Spelled(image.reason))));
     return skipped;
   }
 

@@ -19,6 +19,7 @@
 #include "lf/analysis/lens_statistics/lens_statistics.h"
 #include "lf/core/geometry.h"
 #include "lf/core/quantities.h"
+#include "lf/core/spelling.h"
 #include "lf/core/value_named.h"
 #include "lf/core/version.h"
 
@@ -52,7 +53,7 @@ py::tuple Through(const OpenedField& field, uint32_t frame, const RenderCamera& 
   if (lf_pixels != "auto")
     options.footprint = lf_pixels == "areas" ? PixelFootprint::kArea : PixelFootprint::kPoint;
   if (max_angle_deg) options.max_angle_rad = RadiansFromDegrees(*max_angle_deg);
-  options.memory_bytes = Take(ParseByteSize(memory, "--memory"));
+  options.memory_bytes = Take(ParseByteSize(memory, "{memory}"));
   options.strict = strict;
   options.stop = &signals.stop;
   options.adds_opacity = true;  // for Frame.save(), which may give files alpha
@@ -67,7 +68,8 @@ py::tuple Through(const OpenedField& field, uint32_t frame, const RenderCamera& 
   made.notes.fps = fps;
   made.notes.version = Version();
   std::vector<std::pair<std::string, std::string>> skipped;
-  for (const SkippedImage& image : made.skipped) skipped.emplace_back(image.name, image.reason);
+  for (const SkippedImage& image : made.skipped)
+    skipped.emplace_back(image.name, Spelled(image.reason));
   Frame result = MakeFrame(std::move(made.picture), std::move(made.notes), made.keeps_opacity);
   result.more_metadata = StatisticMetadata(options);
   return py::make_tuple(std::move(result), skipped);

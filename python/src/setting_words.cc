@@ -4,12 +4,16 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <iterator>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "python/src/errors.h"
 
 #include "lf/core/parse_number.h"
+#include "lf/core/spelling.h"
 #include "lf/render/settings/setting_table.h"
 
 namespace lf::python {
@@ -35,13 +39,36 @@ std::string KindOf(const Setting& setting) {
   return "";
 }
 
-// Returns a reference to a setting as an argument: filter="bicubic", fill=-1, or its name alone.
-std::string Argument(std::string_view key, std::string_view value) {
-  if (value.empty()) return std::string(key);
+// The arguments that have other names than the options of programs.
+constexpr std::pair<std::string_view, std::string_view> kOtherNames[] = {
+    {"camera", "start"}, {"output", "store"}, {"packages", "count"}};
+
+// The arguments that are True where a command line has the option.
+constexpr std::string_view kFlags[] = {"bayer",     "calibration_only", "flip_x", "flip_y",
+                                       "overwrite", "resume",           "strict", "verify"};
+
+// Returns a value as Python has it.
+std::string ValueText(std::string_view key, std::string_view value) {
   const Setting* const setting = FindSetting(key);
-  const bool is_text = setting == nullptr || setting->kind == SettingKind::kChoice ||
-                       (setting->kind == SettingKind::kText && !ParseNumber(value));
-  return is_text ? fmt::format("{}=\"{}\"", key, value) : fmt::format("{}={}", key, value);
+  if (key == "guard" || (setting != nullptr && setting->kind == SettingKind::kSwitch))
+    return value == "on" ? "True" : "False";
+  const bool is_text = setting == nullptr || setting->kind == SettingKind::kText
+                           ? !ParseNumber(value)
+                           : setting->kind == SettingKind::kChoice;
+  return is_text ? fmt::format("\"{}\"", value) : std::string(value);
+}
+
+// Returns an option as an argument: filter="bicubic", fill=-1, resume=True, or max_images=. Before
+// a colon stands its name alone, as in the messages of Python's own checks.
+std::string Argument(const OptionReference& option) {
+  std::string_view name = option.key;
+  for (const auto& [key, other] : kOtherNames)
+    if (option.key == key) name = other;
+  if (!option.value.empty()) return fmt::format("{}={}", name, ValueText(option.key, option.value));
+  if (option.is_heading) return std::string(name);
+  const bool is_flag =
+      std::find(std::begin(kFlags), std::end(kFlags), option.key) != std::end(kFlags);
+  return fmt::format("{}={}", name, is_flag ? "True" : "");
 }
 
 // The rule `require` only decides how a program ends.
@@ -69,14 +96,13 @@ SettingWords TextsOfSettings(const SettingWords& words) {
 
 Result<FilmSettings> FilmSettingsOf(const SettingWords& words) {
   FilmSettings film;
-  for (const auto& [key, text] : words)
-    if (const Result<void> set = FindSetting(key)->set(text, &film); !set)
-      return Error{set.error().kind, Spelled(set.error().message, Argument)};
+  for (const auto& [key, text] : words) LF_RETURN_IF_ERROR(FindSetting(key)->set(text, &film));
   film.adds_opacity = true;
   return film;
 }
 
 void AddSettings(py::module_& module) {
+  SetSpeller(Argument);
   module.def("settings", &Settings);
   module.def("texts_of_settings", &TextsOfSettings);
 }

@@ -19,8 +19,9 @@ using SettingWords = std::map<std::string, std::string>;
 // alpha. kUsage: a text is no value of its setting; the message names the argument.
 Result<FilmSettings> FilmSettingsOf(const SettingWords& words);
 
-// Adds settings(), which returns the rows of the table that are arguments, and texts_of_settings(),
-// which returns the texts of all settings after some were set.
+// Lets messages name options as arguments (lf/core/spelling.h). Adds settings(), which returns the
+// rows of the table that are arguments, and texts_of_settings(), which returns the texts of all
+// settings after some were set.
 void AddSettings(pybind11::module_& module);
 
 }  // namespace lf::python

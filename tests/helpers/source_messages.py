@@ -4,11 +4,9 @@ import pathlib
 import re
 
 import program_list
+from message_rules import is_shipped, literals, spelled
 
 PROGRAMS = program_list.names(pathlib.Path(__file__).resolve().parents[2])
-TOKEN = re.compile(r'//[^\n]*|R"\((?P<raw>.*?)\)"|(?P<words>"(?:[^"\\\n]|\\.)*"(?:\s*"(?:[^"\\\n]|\\.)*")*)|'
-                   r"'(?:[^'\\\n]|\\.)+'", re.S)
-WORD = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
 # The texts of a program's help: options and their groups, and the summary, usage, examples and details of HelpTexts.
 HELP = re.compile(r"OptionGroup \w+\(app, \Z|"
                   r"(?:\bAdd|\bAddFlag|\bAddChoice|AddTo)\((?:[^;]|;(?=[^\n]*\"))*\Z|"
@@ -24,7 +22,7 @@ COMMAND = re.compile(r"\b(?:" + "|".join(PROGRAMS) + r") (?:[-{<]|[A-Z]{2,}|[a-z
 
 
 class Message:
-    """A literal of the sources: the file, the line where it begins, and its text."""
+    """A literal of the sources: the file, the line where it begins, and its text as programs print it."""
 
     def __init__(self, file, line, text):
         self.file, self.line, self.text = file, line, text
@@ -38,32 +36,26 @@ class Message:
         return f"{self.file}:{self.line}: {self.text}"
 
 
-def literals(text):
-    """Yields (offset, literal) of C++ text, with neighbouring literals joined."""
-    for match in TOKEN.finditer(text):
-        if match["raw"] is not None:
-            yield match.start(), match["raw"]
-        elif match["words"] is not None:
-            joined = "".join(WORD.findall(match["words"]))
-            yield match.start(), joined.replace('\\"', '"').replace("\\n", "\n").replace("\\\\", "\\")
-
-
 def is_help(text, offset):
     """Returns true if the literal is a text of the help."""
     statement = text[max(text.rfind(";\n", 0, offset), text.rfind("}\n\n", 0, offset), 0):offset]
     return bool(HELP.search(statement)) or "HelpTexts" in statement
 
 
+def sources(repository: pathlib.Path) -> list:
+    """Returns the sources of the programs and of the library."""
+    files = [file for folder in ("tools", "lf") for suffix in (".cc", ".h")
+             for file in sorted((repository / folder).rglob("*" + suffix))]
+    return [file for file in files if is_shipped(file)]
+
+
 def all_literals(repository: pathlib.Path) -> list:
     """Returns the literals of the programs and of the library that are no texts of the help."""
     found = []
-    for folder in "tools", "lf":
-        for file in sorted((repository / folder).rglob("*.cc")) + sorted((repository / folder).rglob("*.h")):
-            if file.stem.endswith(("_test", "_fuzz", "_bench")):
-                continue
-            text = file.read_text()
-            found += [Message(str(file.relative_to(repository)), text.count("\n", 0, offset) + 1, literal)
-                      for offset, literal in literals(text) if not is_help(text, offset)]
+    for file in sources(repository):
+        text = file.read_text()
+        found += [Message(str(file.relative_to(repository)), text.count("\n", 0, offset) + 1, spelled(literal))
+                  for offset, literal in literals(text) if not is_help(text, offset)]
     return found
 
 

@@ -16,6 +16,7 @@
 #include "tools/common/validators.h"
 
 #include "lf/core/log.h"
+#include "lf/core/spelling.h"
 #include "lf/core/version.h"
 
 namespace lf {
@@ -99,6 +100,7 @@ int Program::Run(int argc, char** argv, const std::function<Result<void>()>& bod
   mallopt(M_MMAP_THRESHOLD, kLargeBytes);
 #endif
   StartProcess();
+  SetSpeller(CommandLineOption);
   // A closed pipe or a file size limit must be an error of the write and not end the program.
   ::signal(SIGPIPE, SIG_IGN);
   ::signal(SIGXFSZ, SIG_IGN);

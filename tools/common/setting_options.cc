@@ -10,6 +10,7 @@
 #include "tools/common/validators.h"
 
 #include "lf/core/check.h"
+#include "lf/core/spelling.h"
 
 namespace lf {
 namespace {
@@ -26,20 +27,13 @@ void AddRange(CLI::Option* option, const Setting& setting) {
 
 }  // namespace
 
-std::string OptionOf(std::string_view key, std::string_view value) {
-  if (key == "guard" && value == "off") return "--no-guard";
-  std::string option = "--" + std::string(key == "max_angle_deg" ? "max-angle" : key);
-  std::replace(option.begin(), option.end(), '_', '-');
-  return value.empty() ? option : option + " " + std::string(value);
-}
-
 std::vector<std::string> WordsOf(const FilmSettings& film,
                                  const std::function<bool(const Setting&)>& is_wanted) {
   std::vector<std::string> words;
   for (const Setting& setting : SettingTable()) {
     const std::string value = setting.get(film);
     if (value == setting.get(FilmSettings()) || !is_wanted(setting)) continue;
-    words.push_back(setting.key == "guard" ? OptionOf(setting.key, value) : OptionOf(setting.key));
+    words.push_back(CommandLineOption({setting.key, setting.key == "guard" ? value : ""}));
     if (setting.kind == SettingKind::kPoint)
       for (const auto& number : CLI::detail::split(value, ' ')) words.push_back(number);
     else if (setting.key != "guard")
@@ -61,13 +55,13 @@ void SettingOptions::AddTo(OptionGroup& group, SettingGroup settings) {
 }
 
 void SettingOptions::AddTo(OptionGroup& group, std::string_view key) {
-  AddTo(group, key, Spelled(FindSetting(key)->text, OptionOf));
+  AddTo(group, key, Spelled(FindSetting(key)->text, CommandLineOption));
 }
 
 void SettingOptions::AddTo(OptionGroup& group, std::string_view key, const std::string& text) {
   const Setting* const setting = FindSetting(key);
   LF_CHECK(setting != nullptr);
-  const std::string names = OptionOf(key, setting->placeholder);
+  const std::string names = CommandLineOption({key, setting->placeholder});
   if (setting->kind == SettingKind::kPoint) {
     group.Add(names, points_[std::string(key)], text)->expected(3);
     return;
@@ -88,10 +82,8 @@ void SettingOptions::AddTo(OptionGroup& group, std::string_view key, const std::
 }
 
 Result<void> SettingOptions::Set(FilmSettings* film) const {
-  const auto set = [film](std::string_view key, const std::string& text) -> Result<void> {
-    const Result<void> done = FindSetting(key)->set(text, film);
-    if (done) return {};
-    return Error{done.error().kind, Spelled(done.error().message, OptionOf)};
+  const auto set = [film](std::string_view key, const std::string& text) {
+    return FindSetting(key)->set(text, film);
   };
   for (const auto& [key, word] : words_) LF_RETURN_IF_ERROR(set(key, word));
   for (const auto& [key, numbers] : points_)

@@ -16,10 +16,6 @@
 
 namespace lf {
 
-// Returns the option of a setting, such as "--max-images" of "max_images"; a value follows it.
-// {guard off} is the flag --no-guard.
-std::string OptionOf(std::string_view key, std::string_view value = "");
-
 // Returns the words of a command line that state the settings that differ from the defaults.
 //   is_wanted  returns false for settings that are left out
 std::vector<std::string> WordsOf(const FilmSettings& film,

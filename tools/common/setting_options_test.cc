@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "lf/core/spelling.h"
 #include "lf/render/settings/test_settings.h"
 
 namespace lf {
@@ -34,7 +35,7 @@ TEST(SettingOptions, SayWhatTheTableSays) {
     const std::string value = testing::AnotherOf(setting);
     FilmSettings expected;
     ASSERT_TRUE(setting.set(value, &expected)) << setting.key;
-    std::vector<std::string> words = {OptionOf(setting.key)};
+    std::vector<std::string> words = {CommandLineOption({setting.key})};
     if (setting.kind == SettingKind::kPoint)
       for (const std::string& number : CLI::detail::split(value, ' ')) words.push_back(number);
     else
@@ -64,13 +65,9 @@ TEST(SettingOptions, WrongValuesNameTheOption) {
                                              {"--slab-forward", "0", "x", "1"}}) {
     const Result<FilmSettings> film = Parsed(words);
     ASSERT_FALSE(film) << words[0];
-    EXPECT_NE(film.error().message.find(words[0]), std::string::npos) << film.error().message;
+    const std::string message = Spelled(film.error().message, CommandLineOption);
+    EXPECT_NE(message.find(words[0]), std::string::npos) << message;
   }
-}
-
-TEST(SettingOptions, ReferencesAreOptions) {
-  EXPECT_EQ(OptionOf("max_angle_deg"), "--max-angle");
-  EXPECT_EQ(OptionOf("lens_weights", "none"), "--lens-weights none");
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "tools/visualizer/edit_json.h"
 
 #include "lf/core/file.h"
+#include "lf/core/spelling.h"
 #include "lf/focus/focus_pick.h"
 #include "lf/live/shrink.h"
 #include "lf/render/state/record_fields.h"
@@ -45,7 +46,7 @@ std::optional<FrameId> FrameOf(const Json& json, const PathFrames& path) {
 
 // Answers with the parser's message, "path.yaml:12:5: ...", and with the line and column in it.
 PageAnswer RefusedPath(const Error& error, const std::string& file) {
-  Json json = {{"error", error.message}};
+  Json json = {{"error", Spelled(error.message)}};
   if (error.message.starts_with(file + ":")) {
     const char* at = error.message.data() + file.size() + 1;
     const char* end = error.message.data() + error.message.size();
@@ -136,7 +137,7 @@ PageAnswer PickFocus(PageScene& scene, const Json& json) {
           {{"error", "the lens of the LF camera sees nothing at this pixel of its image"}});
   }
   const auto pick = FindFocus(scene.light_field(), scene.store(), camera, *ray, scene.pool());
-  if (!pick) return JsonAnswer({{"error", pick.error().message}});
+  if (!pick) return JsonAnswer({{"error", Spelled(pick.error().message)}});
   if (pick->certainty < kLeastCertainty)
     return JsonAnswer(
         {{"error", fmt::format("the distance is only {:.0f} % certain: click on an edge or a "

@@ -9,6 +9,7 @@
 #include "tools/visualizer/page_answers.h"
 
 #include "lf/core/geometry.h"
+#include "lf/core/spelling.h"
 #include "lf/core/version.h"
 #include "lf/distribute/preprocess/frame_density.h"
 #include "lf/render/state/record_fields.h"
@@ -76,7 +77,8 @@ Json OfDepths(const PageScene& scene) {
 }  // namespace
 
 PageAnswer Refusal(int status, const std::string& message) {
-  return {status, "application/json", RecordLine({{"error", message}}), message};
+  const std::string text = Spelled(message);
+  return {status, "application/json", RecordLine({{"error", text}}), text};
 }
 
 PageAnswer Refusal(const Error& error) {
@@ -101,7 +103,8 @@ std::string PathHeadJson(const PathDraft& draft) {
 
 std::string PathNewsJson(PageScene& scene, const std::string& text) {
   const auto draft = scene.AddDraft(text);
-  return RecordLine({{"id", IdOfText(text)}, {"fault", draft ? "" : draft.error().message}});
+  return RecordLine(
+      {{"id", IdOfText(text)}, {"fault", draft ? "" : Spelled(draft.error().message)}});
 }
 
 std::string SceneJson(const PageScene& scene, const PathDraft& draft,

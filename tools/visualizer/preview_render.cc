@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "lf/core/spelling.h"
 #include "lf/import/paths/open_path.h"
 #include "lf/light_field/model/keep_images.h"
 #include "lf/render/package/package.h"
@@ -166,8 +167,10 @@ void PreviewRender::Say(const Wish& wish, const std::string& state, const std::s
     const std::lock_guard lock(mutex_);
     if (picture_) changed = std::to_string(picture_count_);
   }
-  const nlohmann::ordered_json json = {
-      {"frame", wish.frame.value}, {"state", state}, {"message", message}, {"changed", changed}};
+  const nlohmann::ordered_json json = {{"frame", wish.frame.value},
+                                       {"state", state},
+                                       {"message", Spelled(message)},
+                                       {"changed", changed}};
   scene_.events().Post("preview",
                        json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }

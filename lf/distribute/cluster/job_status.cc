@@ -8,6 +8,7 @@
 #include <set>
 
 #include "lf/core/file_lock.h"
+#include "lf/core/spelling.h"
 #include "lf/distribute/cluster/slurm.h"
 #include "lf/render/state/record_fields.h"
 
@@ -122,7 +123,7 @@ Json TaskToJson(const TaskStatus& task) {
                {"restarts", task.state.restart_count()},
                {"crashes", task.state.crash_count},
                {"exit_code", task.state.exit_code},
-               {"message", task.message}};
+               {"message", Spelled(task.message)}};
   if (!task.queue.empty()) json["queue"] = task.queue;
   if (task.rate > 0) json[task.unit + "_per_second"] = task.rate;
   if (task.seconds_left) json["seconds_left"] = *task.seconds_left;
@@ -208,7 +209,7 @@ std::string ToJson(const ClusterJob& job, const JobStatus& status) {
                {"packages", std::move(packages)},
                {"finishing", TaskToJson(status.finishing)}};
   if (const auto left_s = status.seconds_left()) json["seconds_left"] = *left_s;
-  if (!status.queue_error.empty()) json["queue_error"] = status.queue_error;
+  if (!status.queue_error.empty()) json["queue_error"] = Spelled(status.queue_error);
   return RecordText(json);
 }
 

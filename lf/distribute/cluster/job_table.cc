@@ -9,6 +9,8 @@
 
 #include "lf/core/quantities.h"
 
+#include "lf/core/spelling.h"
+
 namespace lf {
 namespace {
 
@@ -35,7 +37,8 @@ std::string StateText(const TaskStatus& task) {
   return queue;
 }
 
-std::string Shortened(const std::string& text) {
+std::string Shortened(const std::string& message) {
+  const std::string text = Spelled(message);
   if (text.size() <= kMostMessage) return text;
   return text.substr(0, kMostMessage - 3) + "...";
 }
@@ -92,7 +95,7 @@ std::string JobTable(const ClusterJob& job, const JobStatus& status) {
   text += "\n";
   if (!status.queue_error.empty())
     text += fmt::format("the queue cannot be queried ({}): this table is made from files only\n",
-                        status.queue_error);
+                        Spelled(status.queue_error));
   std::vector<std::vector<std::string>> rows = {{"package", "state", "on", "frames", "rays",
                                                  "LF images", "rate", "left", "restarts",
                                                  "message"}};

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "lf/core/file.h"
+#include "lf/core/spelling.h"
 #include "lf/core/value_named.h"
 #include "lf/render/state/record_fields.h"
 
@@ -73,7 +74,7 @@ std::string ToJson(const TaskState& state) {
   const Json json = {{"format", kTaskFormat},        {"phase", NameOf(state.phase)},
                      {"node", state.node},           {"process", state.process},
                      {"starts", state.start_count},  {"crashes", state.crash_count},
-                     {"exit_code", state.exit_code}, {"message", state.message},
+                     {"exit_code", state.exit_code}, {"message", Spelled(state.message)},
                      {"begin_s", state.begin_s},     {"end_s", state.end_s}};
   return RecordText(json);
 }

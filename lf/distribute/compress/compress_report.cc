@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lf/core/quantities.h"
+#include "lf/core/spelling.h"
 
 namespace lf {
 namespace {
@@ -79,7 +80,7 @@ std::string CompressText(const CompressReport& report, const CompressOptions& op
     text += fmt::format("note: {} LF images hold floats that were rounded to half floats\n",
                         report.rounded_count);
   for (const CompressReport::Skipped& skipped : report.skipped)
-    text += fmt::format("skipped   {}: {}\n", skipped.name, skipped.reason);
+    text += fmt::format("skipped   {}: {}\n", skipped.name, Spelled(skipped.reason));
   return text + next;
 }
 
@@ -122,7 +123,7 @@ std::string CompressJson(const CompressReport& report, const CompressOptions& op
   json["lf_images_skipped"] = report.skipped.size();
   json["skipped"] = Json::array();
   for (const CompressReport::Skipped& skipped : report.skipped)
-    json["skipped"].push_back({{"name", skipped.name}, {"reason", skipped.reason}});
+    json["skipped"].push_back({{"name", skipped.name}, {"reason", Spelled(skipped.reason)}});
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -9,6 +9,7 @@
 
 #include "lf/core/check.h"
 #include "lf/core/quantities.h"
+#include "lf/core/spelling.h"
 #include "lf/distribute/preprocess/forecast_advice.h"
 
 namespace lf {
@@ -242,7 +243,7 @@ std::string ForecastText(const PreprocessReport& report, const CameraPath& path,
                 (facts.rebins ? fmt::format("; rebinned rays take {:.0f} % of it",
                                             100 * rebinned_s / std::max(cpu_s, 1e-9))
                               : "")
-          : "not known: " + report.rate_error,
+          : "not known: " + Spelled(report.rate_error),
       &lines);
   AddLine(
       "spent here",
@@ -253,7 +254,7 @@ std::string ForecastText(const PreprocessReport& report, const CameraPath& path,
   AddPackages(report, facts, &lines);
   AddDensity(report, path, &lines);
   for (const std::string& warning : DensityWarnings(report, path, facts))
-    lines += fmt::format("\nwarning: {}\n", warning);
+    lines += fmt::format("\nwarning: {}\n", Spelled(warning));
   if (!facts.next.empty()) lines += "\n" + facts.next;
   return lines;
 }
@@ -336,7 +337,8 @@ std::string ForecastJson(const PreprocessReport& report, const CameraPath& path,
       {"resolution", {advice.width_px, advice.height_px}},
       {"largest_aperture",
        advice.largest_aperture_w > 0 ? finite(advice.largest_aperture_w) : Json()}};
-  json["warnings"] = DensityWarnings(report, path, facts);
+  for (const std::string& warning : DensityWarnings(report, path, facts))
+    json["warnings"].push_back(Spelled(warning));
   return text();
 }
 

@@ -7,6 +7,7 @@
 
 #include "lf/camera/distortion_name.h"
 #include "lf/core/log.h"
+#include "lf/core/spelling.h"
 #include "lf/import/report/exposure_report.h"
 #include "lf/storage/load/open_store.h"
 
@@ -112,7 +113,7 @@ Json JsonOf(const Agreement& agreement) {
   json.update({{"places", agreement.place_count},
                {"pairs", agreement.pair_count},
                {"images", agreement.image_count},
-               {"reason", agreement.reason},
+               {"reason", Spelled(agreement.reason)},
                {"tells_intrinsics", agreement.tells_intrinsics},
                {"tells_order", agreement.tells_order},
                {"repair", nullptr}});
@@ -199,7 +200,7 @@ std::string ReportText(const ImportReport& report) {
   AddLine("first image", report.first_image, &lines);
   AddLine("images", ImagesText(report), &lines);
   if (report.pixels) AddLine("pixels", PixelsText(*report.pixels), &lines);
-  if (report.agreement) AddLine("agreement", TextOf(*report.agreement), &lines);
+  if (report.agreement) AddLine("agreement", Spelled(TextOf(*report.agreement)), &lines);
   if (report.profile) AddLine("colours", TextOf(*report.profile), &lines);
   AddCameras(capture.groups, &lines);
   AddLine("positions",
@@ -235,7 +236,7 @@ std::string ReportText(const ImportReport& report) {
       AddLine("falloff", FalloffText(*report.exposure->falloff), &lines);
   }
   for (const CaptureWarning& warning : capture.warnings) {
-    lines += fmt::format("\nwarning: {}: {}\n", warning.kind, warning.message);
+    lines += fmt::format("\nwarning: {}: {}\n", warning.kind, Spelled(warning.message));
     if (!warning.names.empty())
       lines += fmt::format("  {}{}\n", fmt::join(warning.names, ", "),
                            warning.names.size() < warning.image_count ? ", ..." : "");
@@ -284,7 +285,7 @@ std::string ReportJson(const ImportReport& report) {
   json["warnings"] = Json::array();
   for (const CaptureWarning& warning : capture.warnings)
     json["warnings"].push_back({{"kind", warning.kind},
-                                {"message", warning.message},
+                                {"message", Spelled(warning.message)},
                                 {"images", warning.image_count},
                                 {"names", warning.names}});
   json["written"] = report.written.empty() ? Json(nullptr) : Json(report.written);

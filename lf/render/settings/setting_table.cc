@@ -244,20 +244,4 @@ SettingTexts TextsOf(const FilmSettings& film, SettingRole role) {
   return texts;
 }
 
-std::string Spelled(std::string_view text,
-                    const std::function<std::string(std::string_view, std::string_view)>& spell) {
-  std::string spelled;
-  for (;;) {
-    const size_t begin = text.find('{');
-    const size_t end = begin == text.npos ? text.npos : text.find('}', begin);
-    if (end == text.npos) return spelled += text;
-    const std::string_view reference = text.substr(begin + 1, end - begin - 1);
-    const size_t space = std::min(reference.find(' '), reference.size());
-    spelled += text.substr(0, begin);
-    spelled += spell(reference.substr(0, space),
-                     space < reference.size() ? reference.substr(space + 1) : "");
-    text.remove_prefix(end + 1);
-  }
-}
-
 }  // namespace lf

@@ -56,7 +56,7 @@ struct Setting {
   double most = std::numeric_limits<double>::infinity();
   // The first line is a summary. The others are details; a line "word: meaning" explains a word.
   // {mode} or {mode rebin} stands for another setting, with a value, which each door spells in its
-  // own way (Spelled()).
+  // own way (lf/core/spelling.h).
   std::string_view text = {};
 
   // Returns the value as a text that `set` accepts.
@@ -81,11 +81,5 @@ using SettingTexts = std::vector<std::pair<std::string, std::string>>;
 // Returns the settings with this role that matter, as files record them. Leaves out those that are
 // unset.
 SettingTexts TextsOf(const FilmSettings& film, SettingRole role);
-
-// Returns the text with each {key} and {key value} replaced by the result of `spell`, whose second
-// argument is then empty or the value.
-std::string Spelled(
-    std::string_view text,
-    const std::function<std::string(std::string_view key, std::string_view value)>& spell);
 
 }  // namespace lf

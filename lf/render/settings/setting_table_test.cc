@@ -94,14 +94,5 @@ TEST(SettingTable, AnAngleKeepsItsDegrees) {
   }
 }
 
-TEST(Spelled, ReplacesReferencesToSettings) {
-  const auto spell = [](std::string_view key, std::string_view value) {
-    return "<" + std::string(key) + (value.empty() ? "" : "=" + std::string(value)) + ">";
-  };
-  EXPECT_EQ(Spelled("{mode rebin} or {fill}: {open", spell), "<mode=rebin> or <fill>: {open");
-  EXPECT_EQ(Spelled("", spell), "");
-  EXPECT_EQ(Spelled("no reference", spell), "no reference");
-}
-
 }  // namespace
 }  // namespace lf

@@ -8,6 +8,7 @@
 #include <unordered_set>
 
 #include "lf/core/file.h"
+#include "lf/core/spelling.h"
 #include "lf/render/state/record_fields.h"
 
 namespace lf {
@@ -130,7 +131,7 @@ uint64_t PeakMemoryBytes() {
 std::string ToJson(const RenderReport& report) {
   Json skipped = Json::array();
   for (const SkippedImage& image : report.skipped)
-    skipped.push_back({{"name", image.name}, {"reason", image.reason}});
+    skipped.push_back({{"name", image.name}, {"reason", Spelled(image.reason)}});
   Json frames = Json::array();
   for (const FrameReport& frame : report.frames) frames.push_back(FrameToJson(frame));
   Json json = {{"format", "lfreport 2"},
