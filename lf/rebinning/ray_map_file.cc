@@ -110,7 +110,7 @@ Result<Head> ReadHead(const entry_file::Source& source, const std::string& bytes
     return source.Damaged(fmt::format("{} bytes follow its end", source.left() - size_bytes));
   if (head.cell_count > max_cells)
     return InputError(fmt::format(
-        "{}: contains {} cells, but --max-rays and --memory allow only {}, because they are "
+        "{}: contains {} cells, but {{max_rays}} and {{memory}} allow only {}, because they are "
         "smaller than when the file was written",
         source.name(), head.cell_count, max_cells));
   return head;

@@ -198,7 +198,7 @@ TEST_F(RayMapFile, MoreCellsThanAllowedAreRefused) {
   const std::string bytes = FileOf(map);
   EXPECT_EQ(ErrorOf(bytes, 100), "");
   const std::string message = ErrorOf(bytes, 99);
-  EXPECT_NE(message.find("a.rays: contains 100 cells, but --max-rays and --memory allow only 99"),
+  EXPECT_NE(message.find("a.rays: contains 100 cells, but {max_rays} and {memory} allow only 99"),
             std::string::npos)
       << message;
 }

@@ -17,10 +17,10 @@ namespace lf {
 
 Result<void> CheckHasArea(const RenderCamera& camera, FrameId frame) {
   if (camera.aperture.radius_w > 0) return {};
-  return UsageError(
-      fmt::format("--lens-weights area: the lens of frame {} is a pinhole, which has no area: use "
-                  "--lens-weights hat",
-                  frame.value));
+  return UsageError(fmt::format(
+      "{{lens_weights area}}: the lens of frame {} is a pinhole, which has no area: use "
+      "{{lens_weights hat}}",
+      frame.value));
 }
 
 FrameLens::FrameLens(const ImageIndex& index, const RenderCamera& frame, LensWeights kind,

@@ -120,7 +120,7 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
   const size_t least = set_aside + frame_bytes + pair_bytes;
   if (memory_bytes < least)
     return OutputError(
-        fmt::format("--memory {} is too small: the sums of a frame of {} x {} elements and two "
+        fmt::format("{{memory {}}} is too small: the sums of a frame of {} x {} elements and two "
                     "LF images need at least {} MiB",
                     ByteText(memory_bytes), plate_width, plate_height, least / kMiB + 1));
 

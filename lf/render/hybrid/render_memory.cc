@@ -22,12 +22,12 @@ Result<void> SetAsideForRays(size_t memory_bytes, RenderMode mode, size_t max_ce
   const size_t wanted = std::max(max_cells, RebinnedRays::kLeastCells);
   const bool fewer_fit = wanted > RebinnedRays::kLeastCells &&
                          RebinnedRays::BytesOf(RebinnedRays::kLeastCells) <= memory_bytes;
-  return OutputError(
-      fmt::format("--memory {} is too small for {} rebinned rays, which take {} MiB: increase "
-                  "--memory{} (without --max-rays, half of --memory is for rays, or a quarter with "
-                  "--mode hybrid)",
-                  ByteText(memory_bytes), wanted, RebinnedRays::BytesOf(wanted) >> 20,
-                  fewer_fit ? ", or reduce --max-rays" : ""));
+  return OutputError(fmt::format(
+      "{{memory {}}} is too small for {} rebinned rays, which take {} MiB: increase "
+      "{{memory}}{} (without {{max_rays}}, half of {{memory}} is for rays, or a quarter with "
+      "{{mode hybrid}})",
+      ByteText(memory_bytes), wanted, RebinnedRays::BytesOf(wanted) >> 20,
+      fewer_fit ? ", or reduce {max_rays}" : ""));
 }
 
 }  // namespace
@@ -45,8 +45,8 @@ Result<RenderMemory> PlanRenderMemory(size_t memory_bytes, RenderMode mode, size
       has_plates ? frame_count : 1, thread_count, measured_bytes, is_guarded, instants, surface);
   if (!plan && memory.rebin_bytes > 0)
     return Error{plan.error().kind,
-                 fmt::format("{} (in addition to {} MiB for {} rebinned rays: increase --memory, "
-                             "or reduce --max-rays)",
+                 fmt::format("{} (in addition to {} MiB for {} rebinned rays: increase {{memory}}, "
+                             "or reduce {{max_rays}})",
                              plan.error().message, memory.rebin_bytes >> 20, memory.max_cells)};
   if (!plan) return plan.error();
   memory.plan = *plan;
@@ -55,9 +55,9 @@ Result<RenderMemory> PlanRenderMemory(size_t memory_bytes, RenderMode mode, size
   // measured, all frames must therefore fit in one pass.
   if (!Collects(mode) && has_plates && plan->frames_per_pass < frame_count)
     return OutputError(fmt::format(
-        "--mode rebin: \"noise<=X\" needs a plate of {} MiB for each frame, but --memory {} "
+        "{{mode rebin}}: \"noise<=X\" needs a plate of {} MiB for each frame, but {{memory {}}} "
         "has room for only {} of {} plates (in addition to {} MiB for {} rebinned rays): increase "
-        "--memory, reduce --max-rays, or render fewer --frames at a time",
+        "{{memory}}, reduce {{max_rays}}, or render fewer {{frames}} at a time",
         plan->plate_bytes >> 20, ByteText(memory_bytes), plan->frames_per_pass, frame_count,
         memory.rebin_bytes >> 20, memory.max_cells));
   if (!Collects(mode)) memory.plan.frames_per_pass = frame_count;

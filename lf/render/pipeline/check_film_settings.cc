@@ -23,14 +23,14 @@ Result<void> CheckSlab(const Package& package, const FilmSettings& film,
   const Vec3& given = *film.rebin.slab.forward_world;
   if (!(given.norm() > 0))
     return UsageError(
-        "--slab-forward 0 0 0: expected a direction, with at least one number other than 0");
+        "{slab_forward 0 0 0}: expected a direction, with at least one number other than 0");
   const Vec3 forward = given.normalized();
   for (const FrameId frame : frames) {
     const double cosine = forward.dot(package.path.Camera(frame).pinhole.ForwardWorld());
     const double off_deg = std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / kPi;
     if (off_deg > kMost_deg)
       return UsageError(fmt::format(
-          "--slab-forward {} {} {}: the viewing direction of frame {} is {:.0f} degrees away; "
+          "{{slab_forward {} {} {}}}: the viewing direction of frame {} is {:.0f} degrees away; "
           "expected a direction within {:.0f} degrees of the viewing directions of all frames",
           given.x(), given.y(), given.z(), frame.value, off_deg, kMost_deg));
   }
@@ -44,17 +44,17 @@ Result<void> CheckShard(const FilmSettings& film) {
       !film.MeasuresNoise())
     return {};
   return UsageError(
-      "--shard renders only a part of the LF images, but --mode rebin, --mode hybrid, --stop-when "
-      "and --require need all of them: leave out these options, or --shard");
+      "{shard} renders only a part of the LF images, but {mode rebin}, {mode hybrid}, {stop_when} "
+      "and {require} need all of them: leave out these options, or {shard}");
 }
 
 Result<void> CheckRebinnedRays(const Package& package, const FilmSettings& film,
                                const std::vector<FrameId>& frames) {
   if (film.mode == RenderMode::kRebin && film.CountsRays())
     return UsageError(
-        "--mode rebin collects no rays, which \"samples>=N\" (--stop-when, --require) and "
-        "--smooth-below would count: leave these options out, use \"noise<=X\", or use --mode "
-        "hybrid");
+        "{mode rebin} collects no rays, which \"samples>=N\" ({stop_when}, {require}) and "
+        "{smooth_below} would count: leave these options out, use \"noise<=X\", or use "
+        "{mode hybrid}");
   LF_RETURN_IF_ERROR(CheckOpacity(package.light_field.encoding, film.mode));
   LF_RETURN_IF_ERROR(CheckLenses(package.path.cameras, film.mode));
   LF_RETURN_IF_ERROR(CheckShutter(package.path.shutter.exists(), film.mode,
@@ -62,22 +62,22 @@ Result<void> CheckRebinnedRays(const Package& package, const FilmSettings& film,
   LF_RETURN_IF_ERROR(CheckSlab(package, film, frames));
   if (film.Rebins() && !package.choices.has_neighbours)
     return UsageError(fmt::format(
-        "--mode {}: package {} lacks the LF cameras beside the lens, because it was made "
-        "with lfpreprocessor --lens-weights none: make the package again with --mode "
-        "{}, or without --lens-weights none",
+        "{{mode {}}}: package {} lacks the LF cameras beside the lens, because it was made "
+        "with {{lfpreprocessor lens_weights none}}: make the package again with "
+        "{{mode {}}}, or without {{lens_weights none}}",
         NameOf(film.mode), package.name, NameOf(film.mode)));
   if (film.Rebins() && film.max_image_count)
     return UsageError(
-        fmt::format("--max-images cannot be used with --mode {}, in which all frames share the "
-                    "rebinned rays of all LF images: leave it out, or use --mode collect",
+        fmt::format("{{max_images}} cannot be used with {{mode {}}}, in which all frames share the "
+                    "rebinned rays of all LF images: leave it out, or use {{mode collect}}",
                     NameOf(film.mode)));
   if (!film.rebin.reparameterise && film.rebin.query.lens_sets > 1)
     return UsageError(
-        "--reparameterise off cannot be used with --lens-sets above 1: leave one of them out");
+        "{reparameterise off} cannot be used with {lens_sets} above 1: leave one of them out");
   if (film.rebin.nearest > 0 && film.back_end != CollectBackEnd::kReference)
     return UsageError(
-        "--nearest can only be used with --back-end reference, which is far slower: add --back-end "
-        "reference, or leave --nearest out");
+        "{nearest} can only be used with {back_end reference}, which is far slower: add "
+        "{back_end reference}, or leave {nearest} out");
   return {};
 }
 
@@ -88,23 +88,23 @@ Result<void> CheckLensWeights(const Package& package, const FilmSettings& film,
       if (package.path.Camera(frame).transmission && film.Collects())
         return UsageError(
             "the lens has a transmission (lens.transmission in the path), which lens weights "
-            "state: leave out --lens-weights none and options that count rays "
-            "(\"samples>=N\", --smooth-below), or leave the transmission out");
+            "state: leave out {lens_weights none} and options that count rays "
+            "(\"samples>=N\", {smooth_below}), or leave the transmission out");
     return {};
   }
   const char* const name = NameOf(film.lens_weights);
   if (!package.choices.has_neighbours)
     return UsageError(
-        fmt::format("--lens-weights {}: package {} lacks the LF cameras beside the lens, because "
-                    "it was made with lfpreprocessor --lens-weights none: make the package again "
-                    "without this option, or give lfrenderer --lens-weights none",
+        fmt::format("{{lens_weights {}}}: package {} lacks the LF cameras beside the lens, because "
+                    "it was made with {{lfpreprocessor lens_weights none}}: make the package again "
+                    "without this option, or give {{lfrenderer lens_weights none}}",
                     name, package.name));
   if (film.CountsRays())
-    return UsageError(
-        fmt::format("--lens-weights {}: sums of weights replace the ray counts that \"samples>=N\" "
-                    "(--stop-when, --require) and --smooth-below need: leave these options out, "
-                    "use \"noise<=X\", or use --lens-weights none",
-                    name));
+    return UsageError(fmt::format(
+        "{{lens_weights {}}}: sums of weights replace the ray counts that \"samples>=N\" "
+        "({{stop_when}}, {{require}}) and {{smooth_below}} need: leave these options out, "
+        "use \"noise<=X\", or use {{lens_weights none}}",
+        name));
   if (film.lens_weights == LensWeights::kArea)
     for (const FrameId frame : frames)
       for (const RenderCamera& camera : package.path.Instants(frame))
@@ -114,7 +114,7 @@ Result<void> CheckLensWeights(const Package& package, const FilmSettings& film,
 
 // Checks that the frames of a densified light field can be guarded.
 Result<void> CheckGuard(const Package& package, const FilmSettings& film) {
-  constexpr const char* kRemedy = "add --no-guard";
+  constexpr const char* kRemedy = "add {guard off}";
   for (const RenderCamera& camera : package.path.cameras)
     if (camera.surface)
       return UsageError(fmt::format(
@@ -123,14 +123,14 @@ Result<void> CheckGuard(const Package& package, const FilmSettings& film) {
           kRemedy));
   if (film.Rebins())
     return UsageError(fmt::format(
-        "--mode {}: the light field is densified, and rebinned rays cannot be guarded: use --mode "
-        "collect, or {}",
+        "{{mode {}}}: the light field is densified, and rebinned rays cannot be guarded: use "
+        "{{mode collect}}, or {}",
         NameOf(film.mode), kRemedy));
   const RadianceEncoding& encoding = package.light_field.encoding;
   if (encoding.HasOpacity())
     return UsageError(fmt::format(
         "the light field is densified, and frames with alpha cannot be guarded: composite the LF "
-        "images over a background with --background, or {}",
+        "images over a background with {{background}}, or {}",
         kRemedy));
   if (encoding.bayer != BayerPattern::kNone)
     return UsageError(fmt::format(
@@ -138,7 +138,7 @@ Result<void> CheckGuard(const Package& package, const FilmSettings& film) {
   if (!package.choices.has_neighbours)
     return UsageError(fmt::format(
         "the light field is densified, but package {} lacks the LF cameras beside the lens, which "
-        "the guard needs, because it was made with lfpreprocessor --no-guard: make it again "
+        "the guard needs, because it was made with {{lfpreprocessor guard off}}: make it again "
         "without this option, or {}",
         package.name, kRemedy));
   return {};
@@ -154,23 +154,23 @@ Result<void> CheckFilmSettings(const Package& package, const FilmSettings& optio
   const std::optional<size_t>& most = package.choices.max_image_count;
   if (most && *film.max_image_count > *most)
     return UsageError(fmt::format(
-        "package {} was made with --max-images {}, and contains no more LF images of any "
-        "frame: give lfrenderer at most this --max-images, or make the package again",
+        "package {} was made with {{max_images {}}}, and contains no more LF images of any "
+        "frame: give lfrenderer at most this {{max_images}}, or make the package again",
         package.name, *most));
   LF_RETURN_IF_ERROR(CheckShard(film));
   if (package.whole_virtual_count > 0 && film.guard) LF_RETURN_IF_ERROR(CheckGuard(package, film));
   if (package.whole_virtual_count > 0 && !film.guard &&
       (film.stop_when.samples || film.require.samples))
     return UsageError(
-        "--stop-when and --require samples>=N count the rays of recorded LF images alone, but "
+        "{stop_when} and {require} samples>=N count the rays of recorded LF images alone, but "
         "frames of a densified light field add the rays of virtual LF images to the same counts: "
-        "use \"noise<=X\", or leave out --no-guard");
+        "use \"noise<=X\", or leave out {guard off}");
   if (film.CountsRays() && film.reading.estimator == Estimator::kBilinear &&
       film.reading.filter == PixelFilter::kMosaic)
     return UsageError(
-        "--filter mosaic: a ray counts up to 8 times, so that \"samples>=N\" (--stop-when, "
-        "--require) and --smooth-below cannot count rays: leave these options out, use "
-        "\"noise<=X\", or use --filter bilinear");
+        "{filter mosaic}: a ray counts up to 8 times, so that \"samples>=N\" ({stop_when}, "
+        "{require}) and {smooth_below} cannot count rays: leave these options out, use "
+        "\"noise<=X\", or use {filter bilinear}");
   return CheckLensWeights(package, film, frames);
 }
 

@@ -73,10 +73,10 @@ Result<OutputFiles> MakeFilmOutputs(std::vector<OutputFile> outputs, const fs::p
   if (fs::exists(*video, error)) LF_RETURN_IF_ERROR(CheckVideoTarget(*video));
   for (const char* const state : {"partial", "cluster"})
     if (LiesIn(*video, folder / state))
-      return UsageError(
-          fmt::format("--video {}: lies in {}, which belongs to the render: give another --video",
-                      video->string(), (folder / state).string()));
-  outputs.emplace_back(*video, "the video", "--video");
+      return UsageError(fmt::format(
+          "{{video {}}}: lies in {}, which belongs to the render: give another {{video}}",
+          video->string(), (folder / state).string()));
+  outputs.emplace_back(*video, "the video", "{video}");
   return OutputFiles::Make(std::move(outputs));
 }
 

@@ -100,7 +100,7 @@ TEST_F(CheckOutputsTest, AVideoIsNoOtherFileOfTheRender) {
     options_.folder.keep_plates = true;
     options_.folder.more_outputs = {folder_ / "film" / "planes.json"};
     options_.folder.video = folder_ / "film" / name;
-    EXPECT_NE(Refusal().find("give another --video"), std::string::npos) << name << Refusal();
+    EXPECT_NE(Refusal().find("give another {video}"), std::string::npos) << name << Refusal();
   }
   options_.folder.video = folder_ / "film" / "film.mp4";
   EXPECT_EQ(Refusal(), "");

@@ -16,21 +16,21 @@ Result<void> CheckRenderOptions(const Package& package, const RenderOptions& opt
   const FolderOptions& folder = options.folder;
   if (film.mode == RenderMode::kRebin && folder.keep_plates)
     return UsageError(
-        "--keep-plates cannot be used with --mode rebin, which collects no rays and therefore has "
-        "no plates: leave it out, or use --mode hybrid");
+        "{keep_plates} cannot be used with {mode rebin}, which collects no rays and therefore has "
+        "no plates: leave it out, or use {mode hybrid}");
   LF_RETURN_IF_ERROR(CheckOutputs(package, options));
   LF_RETURN_IF_ERROR(CheckFilmSettings(package, film, options.frames));
   if (!folder.finish_early.empty() && (film.shard || !folder.resume))
     return UsageError(
-        "--finish finishes frames with the rays of an unfinished render: add --resume, and leave "
-        "out --shard, because the shards of a frame must use all of its LF images");
+        "{finish} finishes frames with the rays of an unfinished render: add {resume}, and leave "
+        "out {shard}, because the shards of a frame must use all of its LF images");
   if (film.shard && (folder.keep_plates || folder.video))
     return UsageError(
-        "--keep-plates and --video cannot be used with --shard, which writes no frames: leave them "
-        "out, and give --video to lfmerge");
+        "{keep_plates} and {video} cannot be used with {shard}, which writes no frames: leave them "
+        "out, and give {video} to lfmerge");
   if (film.shard && (film.adds_opacity || folder.picture != PictureOptions()))
     return UsageError(
-        "--frame-alpha, --colour-space, --z and --view cannot be used with --shard, which writes "
+        "{frame_alpha}, {colour_space}, {z} and {view} cannot be used with {shard}, which writes "
         "no "
         "frames: leave them out, and give them to lfmerge");
   return {};

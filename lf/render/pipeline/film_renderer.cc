@@ -232,11 +232,12 @@ Result<void> FilmRenderer::CheckReach(const LensGaps& gaps, FrameId frame) const
   const double reached_w = gaps.ReachedCamera().aperture.radius_w - camera.aperture.radius_w;
   const double known_w = NeighbourReach_w(camera, *sampling);
   if (reached_w <= known_w * (1 + 1e-9)) return {};
-  return UsageError(fmt::format(
-      "--sigma-st, --lens-points: with these options frame {} needs LF cameras up to {:.3g} world "
-      "units beside its lens, but package {} contains them only up to {:.3g}: leave "
-      "the options out, or render from the light field instead of packages",
-      frame.value, reached_w, setup_.package().name, known_w));
+  return UsageError(
+      fmt::format("{{sigma_st}}, {{lens_points}}: with these options frame {} needs LF cameras up "
+                  "to {:.3g} world "
+                  "units beside its lens, but package {} contains them only up to {:.3g}: leave "
+                  "the options out, or render from the light field instead of packages",
+                  frame.value, reached_w, setup_.package().name, known_w));
 }
 
 Result<void> FilmRenderer::PrepareRebinning(const EarlierRun* earlier) {

@@ -171,13 +171,13 @@ TEST_F(FilmRendererTest, RebinnedRaysRefuseAShutter) {
     const auto renderer = FilmRenderer::Open(film_, options_, work_, {}, pool_);
     ASSERT_FALSE(renderer);
     EXPECT_EQ(renderer.error().kind, ErrorKind::kUsage);
-    EXPECT_NE(renderer.error().message.find("use --mode collect"), std::string::npos);
+    EXPECT_NE(renderer.error().message.find("use {mode collect}"), std::string::npos);
   }
   options_.mode = RenderMode::kCollect;
   film_.whole_virtual_count = 1;
   const auto guarded = FilmRenderer::Open(film_, options_, work_, {}, pool_);
   ASSERT_FALSE(guarded);
-  EXPECT_NE(guarded.error().message.find("add --no-guard"), std::string::npos);
+  EXPECT_NE(guarded.error().message.find("add {guard off}"), std::string::npos);
 }
 
 TEST_F(FilmRendererTest, StopRulesAreThoseOfAFolder) {

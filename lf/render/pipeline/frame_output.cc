@@ -47,10 +47,11 @@ Result<void> WritePicture(const PlateNotes& notes, DevelopedFrame picture,
   if (is_interrupted && is_interrupted())
     return Error{ErrorKind::kInterrupted, fmt::format("{}: interrupted", to.string())};
   if (options.has_focus_depth && !notes.camera.surface && !notes.FocalSurface().empty())
-    return UsageError(fmt::format(
-        "{}: --z: the frame has a focal surface, which plates only name: leave --z out, or render "
-        "the frame as a whole",
-        to.string()));
+    return UsageError(
+        fmt::format("{}: {{z}}: the frame has a focal surface, which plates only name: leave {{z}} "
+                    "out, or render "
+                    "the frame as a whole",
+                    to.string()));
   ConvertFromRec709(options.colours, &picture.rgb);
   if (options.has_focus_depth) picture.focus_depth_w = FocusDepths(notes.camera);
   ImageMetadata metadata = FileMetadata(notes, format, options.colours);
@@ -78,7 +79,7 @@ Result<Image<uint8_t>> FilmFiles::ReadPicture(FrameId frame) const {
   if (picture.width() != width_px || picture.height() != height_px)
     return InputError(fmt::format(
         "{}: has {} x {} pixels, expected {} x {}: remove the file, and render this frame again "
-        "with --resume",
+        "with {{resume}}",
         PathOf(frame).string(), picture.width(), picture.height(), width_px, height_px));
   return picture;
 }

@@ -18,7 +18,7 @@ enum class FramesBeyondEnd { kError, kLeftOut };
 // message names `option`.
 //   beyond_end  kLeftOut: frames after frame_count are left out, so that the result may be empty
 Result<std::vector<FrameId>> ParseFrameRange(std::string_view text, size_t frame_count,
-                                             const char* option = "--frames",
+                                             const char* option = "{frames}",
                                              FramesBeyondEnd beyond_end = FramesBeyondEnd::kError);
 
 }  // namespace lf

@@ -31,7 +31,7 @@ TEST(FrameRange, AStepMayFollowAColon) {
 
 TEST(FrameRange, FramesBeyondTheEndMayBeLeftOut) {
   const auto clamped = [](std::string_view text) {
-    return ParseFrameRange(text, 72, "--frames", FramesBeyondEnd::kLeftOut);
+    return ParseFrameRange(text, 72, "{frames}", FramesBeyondEnd::kLeftOut);
   };
   EXPECT_EQ(clamped("71-80").value(), (std::vector<FrameId>{FrameId{71}, FrameId{72}}));
   EXPECT_EQ(clamped("72-75").value(), (std::vector<FrameId>{FrameId{72}}));

@@ -221,7 +221,7 @@ TEST_F(GuardedRenderTest, RebinnedRaysAreRefused) {
         FilmRenderer::Open(PackageOfAll(densified, film_, 3), options_, work_, {}, pool_);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().kind, ErrorKind::kUsage);
-    EXPECT_NE(refused.error().message.find("--no-guard"), std::string::npos);
+    EXPECT_NE(refused.error().message.find("{guard off}"), std::string::npos);
   }
 }
 

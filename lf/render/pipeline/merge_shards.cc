@@ -68,7 +68,7 @@ Result<std::vector<fs::path>> FilesOf(const std::vector<fs::path>& given) {
     if (files.size() == before)
       return InputError(
           fmt::format("{}: contains no plates: expected files that end in .plate, written by "
-                      "lfrenderer --shard or --keep-plates",
+                      "{{lfrenderer shard}} or {{keep_plates}}",
                       path.string()));
   }
   std::sort(files.begin(), files.end());
@@ -128,7 +128,7 @@ class Merger {
     LF_ASSIGN_OR_RETURN(const std::vector<fs::path> files, FilesOf(given));
     if (files.empty())
       return InputError(
-          "no plates are given: expected plate files of lfrenderer --shard or --keep-plates, or "
+          "no plates are given: expected plate files of {lfrenderer shard} or {keep_plates}, or "
           "folders with such files");
     for (const fs::path& file : files) {
       if (IsStopped()) return Interrupted();
@@ -168,7 +168,7 @@ class Merger {
                 ? fmt::format("interrupted after 0 of {} frames; nothing was made yet",
                               now_.frame_total)
                 : fmt::format("interrupted after {} of {} frames; these are kept in {}, and "
-                              "--resume continues",
+                              "{{resume}} continues",
                               now_.frame_count, now_.frame_total, options_.output_folder.string())};
   }
   fs::path PathOf(FrameId frame) const {
@@ -285,8 +285,8 @@ class Merger {
                     lost.size() == 1 ? "" : "s", PathOf(lost.front()).string());
     if (options_.video && fs::exists(*options_.video))
       return UsageError(
-          fmt::format("{}, so that --resume would shorten {}: give their plates, too, or another "
-                      "--video",
+          fmt::format("{}, so that {{resume}} would shorten {}: give their plates, too, or another "
+                      "{{video}}",
                       words, options_.video->string()));
     LogWarning("{}: they stay, but the report does not describe them", words);
     return {};
@@ -305,9 +305,10 @@ class Merger {
     for (auto& [id, frame] : frames_) {
       if (!fs::exists(PathOf(id)) || options_.overwrite) continue;
       if (!options_.resume)
-        return UsageError(fmt::format(
-            "{}: exists already: keep such frames with --resume, or replace them with --overwrite",
-            PathOf(id).string()));
+        return UsageError(
+            fmt::format("{}: exists already: keep such frames with {{resume}}, or replace them "
+                        "with {{overwrite}}",
+                        PathOf(id).string()));
       if (!frame.report) continue;
       if (const auto difference = DifferenceFrom(film_before, frame)) {
         LogWarning("{}: {}; the frame is made again", PathOf(id).string(),

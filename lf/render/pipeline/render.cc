@@ -139,8 +139,8 @@ Result<void> Renderer::OpenState() {
   if (!had_plates_ && state_->finished().empty()) totals_.skipped.clear();
   if (setup_->work().strict && !totals_.skipped.empty())
     return InputError(fmt::format(
-        "--strict: the unfinished render has left out {} LF images, the first: {}; leave "
-        "out --strict, or start again with --overwrite instead of --resume",
+        "{{strict}}: the unfinished render has left out {} LF images, the first: {}; leave "
+        "out {{strict}}, or start again with {{overwrite}} instead of {{resume}}",
         totals_.skipped.size(), totals_.skipped.front().reason));
   totals_.inputs = state_options.rays;
   totals_.inputs.insert(totals_.inputs.end(), state_options.picture.begin(),
@@ -181,9 +181,9 @@ std::vector<FrameId> Renderer::FramesToRender() {
       const bool lacks_plate = folder_.keep_plates && !state_->HasPlateBeside(frame);
       if (!lacks_samples && !lacks_noise && !lacks_plate) continue;
       LogInfo("frame {} is rendered again, for {}", frame.value,
-              lacks_samples ? "--require: its samples were not measured"
-              : lacks_noise ? "--require: its noise was not measured"
-                            : "--keep-plates");
+              lacks_samples ? "{require}: its samples were not measured"
+              : lacks_noise ? "{require}: its noise was not measured"
+                            : "{keep_plates}");
       state_->Forget(frame);
     }
     frames.push_back(frame);
@@ -260,7 +260,8 @@ std::vector<FrameId> Renderer::EarlyOf(std::span<const FrameId> frames) const {
       early.push_back(frame);
     else
       LogWarning(
-          "--finish: frame {} has no rays yet, and is therefore rendered from all of its LF images",
+          "{{finish}}: frame {} has no rays yet, and is therefore rendered from all of its LF "
+          "images",
           frame.value);
   }
   return early;
@@ -349,8 +350,8 @@ Result<RenderReport> Renderer::End() {
         "check {}",
         folder_.output_folder.string(), totals_.selected_image_count,
         setup_->film().mode == RenderMode::kRebin
-            ? "the masks of the LF images, --slab-position, --slab-distance, --r-st and "
-              "--r-uv"
+            ? "the masks of the LF images, {slab_position}, {slab_distance}, {r_st} and "
+              "{r_uv}"
             : "whether masks exclude all pixels"));
   if (video_error) return *video_error;
   return std::move(totals_);

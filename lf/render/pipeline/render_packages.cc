@@ -37,8 +37,8 @@ struct Film {
     if (cameras != other.cameras) return "another camera path";
     const PackageChoices &a = choices, &b = other.choices;
     if (a.order != b.order || a.seed != b.seed) return "another order of the LF images";
-    if (a.max_image_count != b.max_image_count) return "another --max-images";
-    if (a.max_angle_rad != b.max_angle_rad) return "another --max-angle";
+    if (a.max_image_count != b.max_image_count) return "another {max_images}";
+    if (a.max_angle_rad != b.max_angle_rad) return "another {max_angle_deg}";
     return "";
   }
 };
@@ -51,7 +51,7 @@ Result<void> CheckCodes(const fs::path& path, const Package& package) {
   const auto codes = FindCodes(light_field.folder, light_field);
   if (!codes)
     return InputError(
-        fmt::format("{}: its light field is not at {} ({}): give it with --lightfield",
+        fmt::format("{}: its light field is not at {} ({}): give it with {{lightfield}}",
                     path.string(), light_field.folder.string(), codes.error().message));
   size_t needed = 0, missing = 0;
   std::string first;
@@ -84,18 +84,18 @@ Result<void> CheckImageFiles(const fs::path& path, const Package& package) {
     const uint64_t bytes = fs::file_size(file, error);
     if (!error && bytes == package.images[id.value].file_bytes) return {};
     if (first) continue;
-    first = error
-                ? InputError(fmt::format(
-                      "{}: its LF images are not at {} ({}: {}): give their light field with "
-                      "--lightfield, and with --images if the LF images lie elsewhere",
-                      path.string(), package.light_field.folder.string(), file.string(),
-                      error.message()))
-                : InputError(fmt::format(
-                      "{}: was made from another light field than the one at {}: {} has {} bytes, "
-                      "but had {} then; give the package's light field with --lightfield, and with "
-                      "--images if the LF images lie elsewhere, or make the package again",
-                      path.string(), package.light_field.folder.string(), file.string(), bytes,
-                      package.images[id.value].file_bytes));
+    first =
+        error ? InputError(fmt::format(
+                    "{}: its LF images are not at {} ({}: {}): give their light field with "
+                    "{{lightfield}}, and with {{images}} if the LF images lie elsewhere",
+                    path.string(), package.light_field.folder.string(), file.string(),
+                    error.message()))
+              : InputError(fmt::format(
+                    "{}: was made from another light field than the one at {}: {} has {} bytes, "
+                    "but had {} then; give the package's light field with {{lightfield}}, and with "
+                    "{{images}} if the LF images lie elsewhere, or make the package again",
+                    path.string(), package.light_field.folder.string(), file.string(), bytes,
+                    package.images[id.value].file_bytes));
   }
   if (first) return *first;
   return {};
@@ -263,7 +263,7 @@ Result<std::vector<PackagePart>> PartsWith(const PackagedFilm& film,
             return std::binary_search(part.frames.begin(), part.frames.end(), frame);
           }))
         return UsageError(fmt::format(
-            "--frames: frame {} is not in any of the given packages: also give its package, or "
+            "{{frames}}: frame {} is not in any of the given packages: also give its package, or "
             "leave the frame out",
             frame.value));
   TellOfOthers(film.paths.size(), film.film_count);

@@ -66,8 +66,8 @@ TEST_F(OpenPackagesTest, EveryChoiceOfTheFilmIsCompared) {
     const std::string message = ErrorOf(change);
     EXPECT_NE(message.find("package-2.lfp: was made for " + words), std::string::npos) << message;
   };
-  expect([](Package* p) { p->choices.max_angle_rad = 0.5; }, "another --max-angle");
-  expect([](Package* p) { p->choices.max_image_count = 2; }, "another --max-images");
+  expect([](Package* p) { p->choices.max_angle_rad = 0.5; }, "another {max_angle_deg}");
+  expect([](Package* p) { p->choices.max_image_count = 2; }, "another {max_images}");
   expect([](Package* p) { p->choices.seed = 4; }, "another order");
   expect([](Package* p) { p->choices.order = ImageOrder::kArea; }, "another order");
   expect([](Package* p) { p->path.cameras[2].aperture.blades = 7; }, "another camera path");

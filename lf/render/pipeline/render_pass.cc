@@ -85,7 +85,7 @@ Result<void> RenderPass::Collect() {
       // After an error, the plates have all rays of the steps before, and can be saved.
       if (!Save(0)) return step.error();
       return Error{step.error().kind,
-                   step.error().message + " (finished work is kept: --resume continues)"};
+                   step.error().message + " (finished work is kept: {resume} continues)"};
     }
     LF_RETURN_IF_ERROR(FinishStoppedFrames());
     context_.progress(renderer_.progress(), finished_count_);
@@ -111,7 +111,8 @@ Result<void> RenderPass::FinishEarlyFrames() {
       early.push_back(f);
     else if (renderer_.Progress(f).places_done == 0)
       LogWarning(
-          "--finish: frame {} has no rays yet, and is therefore rendered from all of its LF images",
+          "{{finish}}: frame {} has no rays yet, and is therefore rendered from all of its LF "
+          "images",
           renderer_.id(f).value);
   }
   return FinishFrames(early);
@@ -134,7 +135,7 @@ Result<void> RenderPass::Finish() {
     if (renderer_.rebinned()->facts().is_too_coarse)
       LogWarning(
           "some cells of rebinned rays are so wide that they got more LF pixels than they can "
-          "hold, so that rays were lost: make --r-st or --r-uv smaller");
+          "hold, so that rays were lost: make {{r_st}} or {{r_uv}} smaller");
     context_.state.RemoveRays();
   }
   const double earlier_s = context_.totals.total_s;

@@ -18,7 +18,7 @@ struct StopRule {
 };
 
 // Returns the rule of a text; no rule if the text is empty. kUsage: the text is no rule, or its
-// number is out of range; the message begins with `name`, such as "--stop-when".
+// number is out of range; the message begins with `name`, such as "{stop_when}".
 Result<StopRule> ParseStopRule(const std::string& text, const std::string& name);
 
 // Returns the text of a rule, such that ParseStopRule() returns exactly this rule.

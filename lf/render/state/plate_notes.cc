@@ -98,7 +98,7 @@ class NotesReader {
     if (text == nullptr && !fault_)
       fault_ = InputError(fmt::format(
           "{}: has no entry {}, because its frame is unfinished, or another version wrote "
-          "it: give a finished plate of lfrenderer --shard or --keep-plates",
+          "it: give a finished plate of {{lfrenderer shard}} or {{lfrenderer keep_plates}}",
           name_, key));
     return text == nullptr ? "" : *text;
   }

@@ -169,7 +169,7 @@ Result<void> RunState::FindEarlierRun() {
   if (!options_.overwrite && (HasPlates() || !records_.empty()))
     return UsageError(fmt::format(
         "{}: contains an unfinished render ({} frames finished, {} begun): continue it with "
-        "--resume, or remove it and start again with --overwrite",
+        "{{resume}}, or remove it and start again with {{overwrite}}",
         partial_.string(), records_.size(), plates_.size()));
   LF_RETURN_IF_ERROR(FindOtherFilms());
   if (options_.overwrite) RemoveAll();
@@ -197,7 +197,7 @@ Result<void> RunState::CheckOtherPackages() const {
             FirstDifference(other.inputs, Joined(options_.rays, options_.picture)))
       return UsageError(fmt::format(
           "{}: is the report of another package or shard, which {}: the frames of both would look "
-          "like one film; give another -o, or remove the frames and reports in this folder",
+          "like one film; give another {{output}}, or remove the frames and reports in this folder",
           file.string(), difference->Text("was rendered with", "this one has")));
   }
   return {};
@@ -232,8 +232,8 @@ Result<void> RunState::FindOtherFilms() {
                  found->others);
     } else if (!found->others.empty()) {
       return UsageError(fmt::format(
-          "{}: {}: both would look like one film; give another -o, or --overwrite{}",
-          options_.folder.string(), found->others, options_.resume ? " instead of --resume" : ""));
+          "{}: {}: both would look like one film; give another {{output}}, or {{overwrite}}{}",
+          options_.folder.string(), found->others, options_.resume ? " instead of {resume}" : ""));
     } else if (is_ours && found->same) {
       const std::optional<RenderReport> before = std::exchange(staying_, found->same);
       if (before) AddFrames(*before, &*staying_);
@@ -330,18 +330,19 @@ bool RunState::HasPlateBeside(FrameId frame) const {
 Result<void> RunState::Check(const std::string& place, FrameId frame, const RunInputs& recorded,
                              bool has_picture) const {
   constexpr const char* kAdvice =
-      "give the same inputs and options, or another -o, or start again with --overwrite instead of "
-      "--resume";
+      "give the same inputs and options, or another {output}, or start again with {overwrite} "
+      "instead of "
+      "{resume}";
   if (frame.value > path_.frame_count())
     return UsageError(fmt::format(
-        "{}: belongs to frame {}, but the camera path has {} frames, so that --resume cannot "
+        "{}: belongs to frame {}, but the camera path has {} frames, so that {{resume}} cannot "
         "use the file; {}",
         place, frame.value, path_.frame_count(), kAdvice));
   RunInputs wanted = options_.rays;
   if (has_picture) wanted = Joined(wanted, options_.picture);
   wanted = Joined(wanted, InputsOfFrame(path_, frame));
   if (const auto difference = FirstDifference(recorded, wanted))
-    return UsageError(fmt::format("{}: {}, so that --resume cannot continue; {}", place,
+    return UsageError(fmt::format("{}: {}, so that {{resume}} cannot continue; {}", place,
                                   difference->Text("was made with", "this call has"), kAdvice));
   return {};
 }
@@ -418,10 +419,11 @@ Result<std::optional<RunState::Rays>> RunState::LoadRays(FrameId first, size_t s
     for (const auto& entry : entries)
       if (!entry.first.starts_with(kProgress)) recorded.push_back(entry);
     if (const auto difference = FirstDifference(recorded, wanted))
-      return UsageError(fmt::format(
-          "{}: {}, so that --resume cannot continue; give the same inputs and options, or another "
-          "-o, or start again with --overwrite instead of --resume",
-          path.string(), difference->Text("was made with", "this call has")));
+      return UsageError(
+          fmt::format("{}: {}, so that {{resume}} cannot continue; give the same inputs and "
+                      "options, or another "
+                      "{{output}}, or start again with {{overwrite}} instead of {{resume}}",
+                      path.string(), difference->Text("was made with", "this call has")));
     return {};
   };
   Result<RaysFile> file = ReadRays(path, max_cells, pool, check);

@@ -280,7 +280,7 @@ TEST_F(RunStateTest, AdviceIsAboutTheWorkThatTheFileHolds) {
   const auto too_many = (*state)->LoadRays(FrameId{1}, 0, "1-3", 0, pool_);
   ASSERT_FALSE(too_many);
   EXPECT_TRUE(too_many.error().message.ends_with(
-      "contains 1 cells, but --max-rays and --memory allow only 0, because they are smaller than "
+      "contains 1 cells, but {max_rays} and {memory} allow only 0, because they are smaller than "
       "when the file was written; remove the file to rebin its rays again"))
       << too_many.error().message;
 }
