@@ -42,7 +42,7 @@ Result<void> CheckFarmPaths(const ClusterJob& job) {
     if (job.engine == ClusterEngine::kOpenJd && !IsUtf8(text))
       return UsageError(fmt::format(
           "{}: is not UTF-8, as the job template of Open Job Description must be: give the folder "
-          "another name, or use --engine array",
+          "another name, or use {{engine array}}",
           text));
     const bool is_expression =
         job.engine == ClusterEngine::kOpenJd && text.find("{{") != std::string::npos;

@@ -31,7 +31,7 @@ Result<std::vector<FrameId>> ReadAll(const fs::path& path, size_t last_frame) {
     fault = parsed.error().message;
   }
   return InputError(
-      fmt::format("{}: is damaged: {}; remove the file, and call lfsubmit --finish again",
+      fmt::format("{}: is damaged: {}; remove the file, and call {{lfsubmit finish}} again",
                   path.string(), fault));
 }
 
@@ -67,7 +67,7 @@ bool HasRays(const ClusterJob& job, const JobPackage& package, FrameId frame) {
 
 Result<size_t> AskToFinish(const ClusterJob& job, const std::string& frames_text) {
   LF_ASSIGN_OR_RETURN(const std::vector<FrameId> frames,
-                      ParseFrameRange(frames_text, LastFrame(job), "--finish"));
+                      ParseFrameRange(frames_text, LastFrame(job), "{finish}"));
   size_t unfinished_count = 0;
   for (const FrameId frame : frames) {
     const auto package =
@@ -75,13 +75,14 @@ Result<size_t> AskToFinish(const ClusterJob& job, const std::string& frames_text
                      [&](const JobPackage& one) { return Has(one.frames, frame); });
     if (package == job.packages.end())
       return UsageError(fmt::format(
-          "--finish: frame {} is not in any package of the job: give only frames of the job",
+          "{{finish}}: frame {} is not in any package of the job: give only frames of the job",
           frame.value));
     if (IsFinished(job, frame)) continue;
     ++unfinished_count;
     if (!HasRays(job, *package, frame))
       return UsageError(fmt::format(
-          "--finish: frame {} cannot be finished yet, because {} has not written a checkpoint with "
+          "{{finish}}: frame {} cannot be finished yet, because {} has not written a checkpoint "
+          "with "
           "rays of this frame: try again when {}/partial/{} contains frame_{:04}.plate, or a file "
           "of rebinned rays (rays_*.rays)",
           frame.value, package->name, job.output_folder.string(), package->name, frame.value));

@@ -75,7 +75,7 @@ Result<void> MakeRoomForJob(const ClusterJob& job, bool overwrite) {
   if (!overwrite && !before) return before.error();
   if (!overwrite)
     return UsageError(fmt::format(
-        "{}: contains a job already: remove it and its frames with --overwrite (to remove the "
+        "{}: contains a job already: remove it and its frames with {{overwrite}} (to remove the "
         "job and keep its frames, remove {}), or continue it: {}",
         job.output_folder.string(), job.Folder().string(), ResumeCommand(job)));
   if (before && HasTasksAtWork(LookAtJob(*before)))

@@ -345,9 +345,10 @@ Result<void> FinishFilm(const ClusterJob& job, const std::string& node,
   if (end->exit_code == 0) return {};
   return Error{
       ErrorKind::kBelowRequired,
-      fmt::format("{}; --overwrite renders the film anew; to check it again with other options of "
-                  "lfrenderer, such as --allow-missing: {} -- OPTIONS",
-                  last, ResumeCommand(job))};
+      fmt::format(
+          "{}; {{overwrite}} renders the film anew; to check it again with other options of "
+          "lfrenderer, such as {{allow_missing}}: {} -- OPTIONS",
+          last, ResumeCommand(job))};
 }
 
 }  // namespace lf

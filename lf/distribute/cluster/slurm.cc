@@ -32,7 +32,7 @@ Result<std::string> Ask(const std::vector<std::string>& words) {
   const Result<CommandAnswer> answer = RunCommand(words, kPatience_s);
   if (!answer)
     return OutputError(answer.error().message +
-                       "; --engine slurm needs Slurm's programs (Debian: apt-get install "
+                       "; {engine slurm} needs Slurm's programs (Debian: apt-get install "
                        "slurm-client), on a machine from which jobs may be submitted");
   if (answer->exit_code != 0)
     return OutputError(fmt::format("{} failed with exit code {}: {}", words.front(),
@@ -193,8 +193,8 @@ Result<void> SubmitToSlurm(ClusterJob* job, const std::vector<size_t>& numbers) 
     if (!answer)
       return OutputError(
           answer.error().message +
-          " (if a task asks for too much, change --threads, --memory, --time-limit or "
-          "--sbatch)");
+          " (if a task asks for too much, change {threads}, {memory}, {time_limit} or "
+          "{sbatch})");
     LF_ASSIGN_OR_RETURN(std::string id, JobId(*answer));
     job->slurm_array_ids.push_back(std::move(id));
     LF_RETURN_IF_ERROR(WriteJob(*job));

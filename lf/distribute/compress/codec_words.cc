@@ -12,7 +12,7 @@ Result<CodecProfile> ProfileOf(const std::string& word) {
   if (word == "default") return CodecProfile::kDefault;
   if (word == "thesis") return CodecProfile::kThesis;
   if (word == "lossless") return CodecProfile::kLossless;
-  return UsageError(fmt::format("--profile {}: expected one of default, thesis, lossless", word));
+  return UsageError(fmt::format("{{profile {}}}: expected one of default, thesis, lossless", word));
 }
 
 }  // namespace
@@ -24,17 +24,17 @@ Result<void> SetCodec(const CodecWords& words, CompressOptions* options) {
   options->codec.threshold = words.threshold >= 0 ? words.threshold : is_thesis ? 8 : 3;
   if (is_lossless && (words.threshold >= 0 || words.target_psnr > 0))
     return UsageError(
-        "--threshold and --target-psnr cannot be used with --profile lossless, which drops no "
+        "{threshold} and {target_psnr} cannot be used with {profile lossless}, which drops no "
         "details: leave them out");
   if (words.quantizer != "8bit") {
     if (!is_thesis)
       return UsageError(
-          "--quantizer can only be used with --profile thesis: leave it out, or add --profile "
-          "thesis");
+          "{quantizer} can only be used with {profile thesis}: leave it out, or add "
+          "{profile thesis}");
     const auto steps = ParseWhole<int>(words.quantizer);
     if (!steps)
       return UsageError(fmt::format(
-          "--quantizer {}: expected 8bit, or a whole number from 2 to 65536", words.quantizer));
+          "{{quantizer {}}}: expected 8bit, or a whole number from 2 to 65536", words.quantizer));
   }
   if (words.target_psnr > 0) options->target_psnr_db = words.target_psnr;
   return {};

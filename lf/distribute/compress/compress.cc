@@ -102,7 +102,7 @@ class Compressor {
 
 Error Compressor::Interrupted() const {
   return {ErrorKind::kInterrupted,
-          fmt::format("interrupted after {} of {} LF images: --resume continues", now_.done,
+          fmt::format("interrupted after {} of {} LF images: {{resume}} continues", now_.done,
                       now_.total)};
 }
 
@@ -178,7 +178,7 @@ Result<void> Compressor::CheckFiles(const PackedStoreWriter& writer) {
     if (!error_)
       error_ = InputError(fmt::format(
           "{}: has {} bytes, but had {} when it was encoded into the unfinished {}: restore the "
-          "file, or start the store again with --overwrite",
+          "file, or start the store again with {{overwrite}}",
           light_field.ImagePath(id).string(), now, then, options_.store.string()));
   });
   if (error_) return *error_;
@@ -262,13 +262,13 @@ Result<void> Compressor::CheckTarget() {
   report_.was_there = is_there && options_.verify;
   if (report_.was_there) return {};
   if (is_there)
-    return UsageError(
-        fmt::format("{}: exists already: replace it with --overwrite, or check it with --verify",
-                    store.string()));
+    return UsageError(fmt::format(
+        "{}: exists already: replace it with {{overwrite}}, or check it with {{verify}}",
+        store.string()));
   if (is_unfinished)
     return UsageError(fmt::format(
-        "{}: exists already as an unfinished store: continue it with --resume, or start "
-        "it again with --overwrite",
+        "{}: exists already as an unfinished store: continue it with {{resume}}, or start "
+        "it again with {{overwrite}}",
         store.string()));
   return {};
 }
@@ -278,7 +278,7 @@ Result<void> Compressor::ChooseThreshold() {
     LF_ASSIGN_OR_RETURN(settings_.threshold,
                         FindThreshold(source_, settings_, *options_.target_psnr_db, pool_,
                                       [this] { return IsInterrupted(); }));
-    LogDebug("--target-psnr {}: threshold {}", *options_.target_psnr_db, settings_.threshold);
+    LogDebug("{{target_psnr {}}}: threshold {}", *options_.target_psnr_db, settings_.threshold);
   }
   report_.threshold = settings_.threshold;
   return {};
@@ -299,7 +299,7 @@ Result<CompressReport> Compressor::Run() {
   LF_RETURN_IF_ERROR(ChooseThreshold());
   if (report_.was_there) {
     if (const Result<void> same = CheckStoreFacts(source_, Verification()); !same)
-      return Error{same.error().kind, same.error().message + ", or replace it with --overwrite"};
+      return Error{same.error().kind, same.error().message + ", or replace it with {overwrite}"};
     LF_RETURN_IF_ERROR(FindSkipped());
   } else {
     LF_RETURN_IF_ERROR(Write(std::move(*held.lock)));

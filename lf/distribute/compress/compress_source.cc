@@ -71,7 +71,7 @@ Result<CompressSource> SourceOfPackages(LightField light_field, std::span<const 
   if (IdentityOf(light_field) != first.whole)
     return InputError(
         fmt::format("package {} was made from another light field than the one of {} LF images in "
-                    "{}: give the light field that it was made from with --lightfield",
+                    "{}: give the light field that it was made from with {{lightfield}}",
                     first.name, light_field.size(), light_field.folder.string()));
   std::vector<PixelRect> rects(light_field.size());
   for (const Package& package : packages)

@@ -93,7 +93,7 @@ TEST(CompressSource, OtherLightFieldsAndPackagesWithoutRaysAreErrors) {
   const Result<CompressSource> of_another = SourceOfPackages(moved, packages, false);
   ASSERT_FALSE(of_another);
   EXPECT_EQ(of_another.error().kind, ErrorKind::kInput);
-  EXPECT_NE(of_another.error().message.find("--lightfield"), std::string::npos);
+  EXPECT_NE(of_another.error().message.find("{lightfield}"), std::string::npos);
   packages[1].whole.calibration = "another";
   const Result<CompressSource> source = SourceOfPackages(Field(), packages, false);
   ASSERT_FALSE(source);

@@ -26,10 +26,10 @@ Result<double> FindThreshold(const CompressSource& source, const CodecSettings& 
                              double psnr_db, ThreadPool& pool,
                              const std::function<bool()>& is_interrupted) {
   const Error interrupted = {ErrorKind::kInterrupted,
-                             "interrupted during the search for the threshold of --target-psnr"};
+                             "interrupted during the search for the threshold of {target_psnr}"};
   if (settings.profile == CodecProfile::kLossless)
     return UsageError(
-        "--target-psnr cannot be used with --profile lossless, which has no loss: leave one of "
+        "{target_psnr} cannot be used with {profile lossless}, which has no loss: leave one of "
         "them out");
   const LightField& light_field = source.light_field;
   const std::vector<LfImageId> ids = source.CompressedIds();
@@ -57,14 +57,14 @@ Result<double> FindThreshold(const CompressSource& source, const CodecSettings& 
   if (is_interrupted()) return interrupted;
   if (std::none_of(images.begin(), images.end(), [](const auto& image) { return bool(image); }))
     return InputError(fmt::format(
-        "--target-psnr: none of the {} LF images that were tried can be read; the first: {}",
+        "{{target_psnr}}: none of the {} LF images that were tried can be read; the first: {}",
         images.size(), images.front().error().message));
   const double best = psnr_at(ThresholdOf(0));
   if (is_interrupted()) return interrupted;
   if (best < psnr_db)
     return UsageError(fmt::format(
-        "--target-psnr {}: cannot be reached, because these options give at most {:.1f} "
-        "dB: give a lower PSNR, or --profile lossless instead",
+        "{{target_psnr {}}}: cannot be reached, because these options give at most {:.1f} "
+        "dB: give a lower PSNR, or {{profile lossless}} instead",
         psnr_db, best));
   int good = 0, bad = kSteps;
   while (bad - good > 1) {

@@ -64,7 +64,7 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
       if (image)
         return InputError(
             "the image can be read, but is not in the store; make the store again with "
-            "--overwrite");
+            "{overwrite}");
       return {};
     }
     LF_RETURN_IF_ERROR(image);
@@ -78,7 +78,7 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
         bytes->mask != again.mask)
       return InputError(
           "the encoded image in the store differs from the image file; make the store again with "
-          "--overwrite");
+          "{overwrite}");
     const std::lock_guard lock(mutex);
     readers.push_back(std::move(reader));
     ++verified;
@@ -100,7 +100,7 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
         ErrorKind::kInterrupted,
         fmt::format(
             "interrupted after {} of {} LF images were verified: the store is complete; call "
-            "lfcompressor with --verify and without --overwrite to check all of it",
+            "lfcompressor with {{verify}} and without {{overwrite}} to check all of it",
             done, ids.size())};
   const auto count = std::count_if(faults.begin(), faults.end(),
                                    [](const auto& fault) { return fault.has_value(); });

@@ -38,13 +38,13 @@ Result<void> CheckLaterRender(const LightField& light_field, const CameraPath& p
   LF_RETURN_IF_ERROR(CheckShutter(path.shutter.exists(), film.mode, needs.guard));
   if (film.Rebins() && film.max_image_count)
     return UsageError(
-        "--max-images cannot be used with --mode rebin or hybrid, in which all frames share the "
-        "rebinned rays of all LF images: leave it out, or use --mode collect");
+        "{max_images} cannot be used with {mode rebin} or hybrid, in which all frames share the "
+        "rebinned rays of all LF images: leave it out, or use {mode collect}");
   if (!film.Collects() && film.lens_weights != LensWeights::kNone)
-    return UsageError(
-        fmt::format("--lens-weights {} cannot be used with --mode rebin, which collects no rays to "
-                    "be weighted: leave it out",
-                    NameOf(film.lens_weights)));
+    return UsageError(fmt::format(
+        "{{lens_weights {}}} cannot be used with {{mode rebin}}, which collects no rays to "
+        "be weighted: leave it out",
+        NameOf(film.lens_weights)));
   if (film.lens_weights == LensWeights::kArea)
     for (const FrameId frame : frames)
       for (const RenderCamera& camera : path.Instants(frame))

@@ -71,7 +71,7 @@ Result<PackageFolder> PackageFolder::Open(const fs::path& folder, const std::str
   const size_t there = opened.Packages().size();
   if (there > 0 && !overwrite)
     return UsageError(fmt::format(
-        "{}: contains {} packages already: replace them with --overwrite, or give another -o",
+        "{}: contains {} packages already: replace them with {{overwrite}}, or give another folder",
         folder.string(), there));
   return opened;
 }

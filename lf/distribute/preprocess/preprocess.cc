@@ -350,8 +350,8 @@ Result<void> Preprocessor::CountMissing(const Package& package, PackageForecast*
           package.light_field.ImagePath(LfImageId{static_cast<uint32_t>(i)}).string();
     if (is_missing && options_.strict)
       return InputError(
-          fmt::format("--strict: {}: the file of this LF image does not exist, or is empty: "
-                      "restore it, or leave --strict out",
+          fmt::format("{{strict}}: {}: the file of this LF image does not exist, or is empty: "
+                      "restore it, or leave {{strict}} out",
                       report_.first_missing));
   }
   return {};

@@ -277,7 +277,7 @@ TEST_F(PreprocessTest, WhatRebinnedRaysCannotHaveIsRefused) {
     const Result<PreprocessReport> report = Preprocess(field_, film_, options_, pool_, nullptr);
     ASSERT_FALSE(report);
     EXPECT_EQ(report.error().kind, ErrorKind::kUsage);
-    EXPECT_NE(report.error().message.find(has_weights ? "--lens-weights" : "--max-images"),
+    EXPECT_NE(report.error().message.find(has_weights ? "{lens_weights}" : "{max_images}"),
               std::string::npos);
   }
 }
@@ -310,7 +310,7 @@ TEST_F(PreprocessTest, PackagesThatAreThereAreReplacedOnRequestOnly) {
   const Result<PreprocessReport> again = Preprocess(field_, film_, options_, pool_, nullptr);
   ASSERT_FALSE(again);
   EXPECT_EQ(again.error().kind, ErrorKind::kUsage);
-  EXPECT_NE(again.error().message.find("--overwrite"), std::string::npos);
+  EXPECT_NE(again.error().message.find("{overwrite}"), std::string::npos);
   options_.overwrite = true;
   options_.package_count = 2;
   Run();
