@@ -182,7 +182,7 @@ Judged BestRepair(const std::vector<Repair>& repairs, const PlaceErrors& errors,
   if (chosen == fits.size()) return {};  // nothing is explained at all
   for (size_t i = 0; i < repairs.size(); ++i)
     if (is_equal(fits[i]))
-      LogDebug("agreement: {:.2f} px at {:.1f} % with --repair {}", fits[i].error_px,
+      LogDebug("agreement: {:.2f} px at {:.1f} % with {{repair {}}}", fits[i].error_px,
                100 * fits[i].share, NameOf(repairs[i]));
   const Judged judged = {repairs[chosen], FitOf(errors.Of(repairs[chosen]), divisor)};
   return IsOfScan(repairs[chosen], repairs) ? WithRefinedFocal(judged, errors, divisor) : judged;

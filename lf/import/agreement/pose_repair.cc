@@ -201,7 +201,8 @@ Result<void> AddWord(std::string_view word, Repair* repair) {
   for (const ReadingName& one : kReadings) words.push_back(one.name);
   for (const OrderName& one : kOrders) words.push_back(one.name);
   return UsageError(fmt::format(
-      "--repair {}: expected words separated by commas: {}, mirror-x, mirror-y, axes:AXES (such as "
+      "{{repair {}}}: expected words separated by commas: {}, mirror-x, mirror-y, axes:AXES (such "
+      "as "
       "axes:x-y-z, right-handed), positions:AXES (such as positions:xz-y), focal:FACTOR (1e-6 to "
       "1e6), swap-principal-point",
       word, fmt::join(words, ", ")));

@@ -63,7 +63,7 @@ std::vector<CaptureWarning> WarnOfDirections(const LightField& light_field) {
   return {WarningAbout(
       light_field, "facing-away",
       fmt::format("{} of {} cameras look away from the common point or direction of most cameras. "
-                  "If their calibration has failed, leave them out with --exclude",
+                  "If their calibration has failed, leave them out with {{lfimport exclude}}",
                   away.size(), axes.size()),
       away)};
 }
@@ -103,7 +103,7 @@ std::vector<CaptureWarning> WarnOfUpsideDown(const LightField& light_field) {
       light_field, "upside-down",
       fmt::format("{} of {} images are upside down compared with the others. This is right if the "
                   "camera was turned over. Otherwise rotate these poses by 180 degrees about their "
-                  "optical axis, or leave them out with --exclude",
+                  "optical axis, or leave them out with {{lfimport exclude}}",
                   down.size(), ups.size()),
       down)};
 }
@@ -128,7 +128,8 @@ std::vector<CaptureWarning> WarnOfRepeats(const LightField& light_field,
   return {WarningAbout(
       light_field, "repeated-positions",
       fmt::format("{} of {} cameras are at the same position as another: rays from there count "
-                  "twice. If images were listed twice, leave one of each pair out with --exclude",
+                  "twice. If images were listed twice, leave one of each pair out with {{lfimport "
+                  "exclude}}",
                   repeated.size(), light_field.size()),
       repeated)};
 }

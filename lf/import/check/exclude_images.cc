@@ -93,7 +93,7 @@ Result<size_t> ExcludeFaulty(const ImageFaults& faults, LightField* light_field)
   if (kept.empty()) {
     const auto& first = faults.missing.empty() ? faults.broken : faults.missing;
     return InputError(
-        fmt::format("--exclude {}: all {} images are missing or broken; the first: {}",
+        fmt::format("{{exclude {}}}: all {} images are missing or broken; the first: {}",
                     kMissingPattern, light_field->size(), first[0].reason));
   }
   return Keep(kept, light_field);
@@ -119,14 +119,14 @@ Result<size_t> ExcludeImages(std::span<const std::string> patterns, LightField* 
     if (!set.Matches(light_field->image_names[i])) kept.push_back(i);
   if (const std::string* unused = set.FirstUnused())
     return InputError(
-        fmt::format("--exclude: \"{}\" matches none of the {} image names, of which the first is "
+        fmt::format("{{exclude}}: \"{}\" matches none of the {} image names, of which the first is "
                     "{}: correct the name or pattern",
                     *unused, light_field->size(), light_field->image_names[0]));
   if (kept.empty())
-    return InputError(
-        fmt::format("--exclude: the names and patterns match all {} images: exclude fewer, because "
-                    "a light field needs at least one",
-                    light_field->size()));
+    return InputError(fmt::format(
+        "{{exclude}}: the names and patterns match all {} images: exclude fewer, because "
+        "a light field needs at least one",
+        light_field->size()));
   return Keep(kept, light_field);
 }
 

@@ -39,14 +39,14 @@ Result<void> CheckAllAreStated(std::span<const StatedExposure> stated,
   if (!first) return {};
   if (!first->fault.empty())
     return InputError(
-        fmt::format("--gain-from-exif: {}; {} of {} images do not state their exposure: leave "
-                    "these images out (--exclude)",
+        fmt::format("{{gain_from_exif}}: {}; {} of {} images do not state their exposure: leave "
+                    "these images out ({{exclude}})",
                     first->fault, fault_count, stated.size()));
   return InputError(fmt::format(
-      "--gain-from-exif: {}: states no {} ({} of {} images lack such values); expected exposure "
+      "{{gain_from_exif}}: {}: states no {} ({} of {} images lack such values); expected exposure "
       "time, f-number and ISO sensitivity in the Exif data of a JPEG, TIFF or PNG file, or in a "
       "camera raw file: copy the Exif data from the original photographs, state lf_gain in "
-      "transforms.json, or estimate it with --match-exposure",
+      "transforms.json, or estimate it with {{match_exposure}}",
       light_field.ImagePath(first->id).string(), MissingOf(first->facts, wants_f_number),
       fault_count, stated.size()));
 }
@@ -93,8 +93,8 @@ Result<ExifGains> GainFromExif(std::span<const StatedExposure> stated, LightFiel
     const auto gain = static_cast<float>(reference / LightOf(stated[i].facts));
     if (!(gain >= kLeastGain && gain <= kMostGain))
       return InputError(fmt::format(
-          "--gain-from-exif: {}: its exposure is {:.3g} times that of {}; expected a factor from "
-          "1e-6 to 1e6: leave the first of these two images out (--exclude)",
+          "{{gain_from_exif}}: {}: its exposure is {:.3g} times that of {}; expected a factor from "
+          "1e-6 to 1e6: leave the first of these two images out ({{exclude}})",
           light_field->ImagePath(LfImageId{i}).string(), 1 / gain,
           light_field->ImagePath(found.reference).string()));
     gains.push_back(gain);

@@ -75,12 +75,12 @@ TEST(ExifGains, ALensThatTellsNoFNumberIsTakenToKeepIt) {
 TEST(ExifGains, AnImageWithoutExposureIsNamed) {
   ExpectError(
       Stated({{0.04, 4, 100}, {0.04, 4, {}}, {}}),
-      {"capture/1.jpg", "states no ISO sensitivity (", "2 of 3", "Exif", "--match-exposure"});
+      {"capture/1.jpg", "states no ISO sensitivity (", "2 of 3", "Exif", "{match_exposure}"});
   ExpectError(Stated({{0.04, 4, 100}, {}}),
               {"capture/1.jpg", "no exposure time and no f-number and no ISO sensitivity"});
   std::vector<StatedExposure> stated = Stated({{0.04, 4, 100}, {0.04, 4, 100}});
   stated[1].fault = "capture/1.jpg: cannot be read";
-  ExpectError(stated, {"capture/1.jpg: cannot be read", "--exclude"});
+  ExpectError(stated, {"capture/1.jpg: cannot be read", "{exclude}"});
 }
 
 TEST(ExifGains, GainsThatNoCameraNeedsAreRefused) {

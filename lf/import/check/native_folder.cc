@@ -81,13 +81,13 @@ Result<void> CheckMayWrite(const fs::path& source, const fs::path& folder, bool 
   if (fs::exists(read, error) && fs::equivalent(read, path, error))
     return UsageError(
         fmt::format("{}: this file is the calibration that is read, and the output would replace "
-                    "it: write to another folder, or allow this with --force",
+                    "it: write to another folder, or allow this with {{force}}",
                     path.string()));
   LF_ASSIGN_OR_RETURN(const bool is_ours, IsAsWritten(path, kImportProgram));
   if (is_ours) return {};
   return UsageError(
       fmt::format("{}: this file was not written by lfimport, or was changed since, and the output "
-                  "would replace it: write to another folder, or allow this with --force",
+                  "would replace it: write to another folder, or allow this with {{force}}",
                   path.string()));
 }
 

@@ -49,7 +49,7 @@ std::optional<CaptureWarning> WarnOfUnusedMasks(const LightField& light_field,
           "{} images have a dynamic_mask_NAME.png beside them, as instant-ngp names masks. "
           "These are white where pixels are to be left out, and are not used, because masks "
           "here are black there: write them inverted to a folder, as NAME.png, and give the "
-          "folder with --masks",
+          "folder with {{masks}}",
           dynamic_count),
       dynamic_count,
       {}};

@@ -259,8 +259,8 @@ Result<MatchedExposure> MatchExposure(const LightField& light_field, const LfIma
     load.progress = [&](size_t done, size_t total) { options.progress(done, 2 * total); };
   if (load.width_px == 0)
     return InputError(fmt::format(
-        "--match-exposure: even small copies of all {} LF images would exceed the limit of {} "
-        "of memory: match one part of the light field at a time (--exclude)",
+        "{{match_exposure}}: even small copies of all {} LF images would exceed the limit of {} "
+        "of memory: match one part of the light field at a time ({{exclude}})",
         plain.size(), ByteText(options.memory_bytes)));
   LF_ASSIGN_OR_RETURN(const std::vector<ExposureView> views,
                       LoadExposureViews(plain, store, load, pool));
@@ -283,10 +283,10 @@ Result<MatchedExposure> MatchExposure(const LightField& light_field, const LfIma
       views.begin(), views.end(), [](const ExposureView& view) { return view.grey != nullptr; }));
   if (tied == 0 || 2 * tied < readable)
     return InputError(fmt::format(
-        "--match-exposure: the gains of only {} of {} LF images can be estimated, from {} places "
+        "{{match_exposure}}: the gains of only {} of {} LF images can be estimated, from {} places "
         "that two LF images show{}. LF images must overlap, the scene must have texture, and its "
         "light must not move relative to the scene (as it does on a turntable). Import without "
-        "--match-exposure, or state lf_gain (doc/formats/transforms_json.md)",
+        "{{match_exposure}}, or state lf_gain (doc/formats/transforms_json.md)",
         tied, readable, samples.size(),
         fit.spread > 0
             ? fmt::format(" (the ratio of their brightness varies by {:.0f} % from place to place)",

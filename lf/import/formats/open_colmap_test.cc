@@ -291,7 +291,7 @@ TEST_F(ReadColmapTest, ImagesAreLookedForAndThePlacesAreListed) {
   for (const fs::path& tried : {folder_ / "sparse/0/images", folder_ / "sparse/images",
                                 folder_ / "images", folder_ / "sparse/0", folder_ / "sparse"})
     EXPECT_HAS(error, tried.string());
-  EXPECT_HAS(error, "(--images)");
+  EXPECT_HAS(error, "({images})");
   Write(folder_ / "sub/a b.png");  // the project folder itself is searched
   EXPECT_EQ(Open(folder_)->folder, folder_);
   Write(folder_ / "sparse/0/images/sub/a b.png");  // this folder is nearer to the model

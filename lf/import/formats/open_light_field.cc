@@ -40,11 +40,11 @@ constexpr const char* kAosName = "poses.json";
 // Returns the first option in `options` that only folders with Stanford names accept, as messages
 // name it; "" if there is none.
 std::string_view StanfordOptionOf(const OpenOptions& options) {
-  if (options.focal_px) return "--focal-px";
-  if (options.pitch_w) return "--pitch";
-  if (options.plane_distance_w) return "--plane-distance";
-  if (options.flip_x) return "--flip-x";
-  if (options.flip_y) return "--flip-y";
+  if (options.focal_px) return "{focal_px}";
+  if (options.pitch_w) return "{pitch}";
+  if (options.plane_distance_w) return "{plane_distance}";
+  if (options.flip_x) return "{flip_x}";
+  if (options.flip_y) return "{flip_y}";
   return "";
 }
 
@@ -62,7 +62,7 @@ Result<void> CheckNoStanfordOptions(const fs::path& path, const OpenOptions& opt
 Result<void> CheckNoFov(const fs::path& path, const OpenOptions& options) {
   if (!options.fov_deg) return {};
   return UsageError(
-      fmt::format("--fov-deg is only for poses of Airborne Optical Sectioning, which lack the "
+      fmt::format("{{fov_deg}} is only for poses of Airborne Optical Sectioning, which lack the "
                   "field of view; {} is of another kind: leave the option out",
                   path.string()));
 }
@@ -70,7 +70,7 @@ Result<void> CheckNoFov(const fs::path& path, const OpenOptions& options) {
 Result<void> CheckNoImagesFolder(const fs::path& path, const OpenOptions& options) {
   if (!options.images_folder) return {};
   return UsageError(fmt::format(
-      "--images cannot be used with {}, which contains its own images: leave the option out",
+      "{{images}} cannot be used with {}, which contains its own images: leave the option out",
       path.string()));
 }
 
@@ -88,17 +88,18 @@ Result<LightField> OpenPackedStore(const fs::path& path, const OpenOptions& opti
   LF_RETURN_IF_ERROR(CheckNoImagesFolder(path, options));
   if (options.masks_folder)
     return UsageError(
-        fmt::format("--masks cannot be used with the packed store {}, which contains its masks: "
+        fmt::format("{{masks}} cannot be used with the packed store {}, which contains its masks: "
                     "leave the option out",
                     path.string()));
   if (options.bayer)
-    return UsageError(fmt::format(
-        "--bayer cannot be used with the packed store {}, whose pixels are already encoded: import "
-        "its image files with lfimport --bayer, and compress them again",
-        path.string()));
+    return UsageError(
+        fmt::format("{{bayer}} cannot be used with the packed store {}, whose pixels are already "
+                    "encoded: import "
+                    "its image files with {{lfimport bayer}}, and compress them again",
+                    path.string()));
   if (options.image_scale.kind != ImageScale::Kind::kAuto)
     return UsageError(
-        fmt::format("--image-scale cannot be used with the packed store {}, whose LF images have "
+        fmt::format("{{image_scale}} cannot be used with the packed store {}, whose LF images have "
                     "the calibrated size: leave the option out",
                     path.string()));
   LogDebug("{}: opened as a packed store", path.string());
@@ -210,7 +211,7 @@ Result<void> CompleteEncoding(const OpenOptions& options, const fs::path& path,
   return InputError(
       fmt::format("{}: the camera raw file {} does not state a Bayer pattern (four letters of R, "
                   "G, B with the two G on a diagonal): state the pattern in transforms.json, such "
-                  "as \"lf_bayer\": \"RGGB\", or import with lfimport --bayer RGGB",
+                  "as \"lf_bayer\": \"RGGB\", or import with {{lfimport bayer RGGB}}",
                   path.string(), light_field->ImagePath({0}).string()));
 }
 
@@ -223,7 +224,7 @@ Result<void> FindImages(const OpenOptions& options, const fs::path& path, LightF
   // its images are there.
   if (found_count == 0 && options.images_folder && light_field->folder != *options.images_folder)
     return InputError(
-        fmt::format("--images {}: neither this folder nor one below it contains an image that {} "
+        fmt::format("{{images {}}}: neither this folder nor one below it contains an image that {} "
                     "names, such as {}: give the folder of these images",
                     options.images_folder->string(), path.string(), name));
   const Intrinsics before = light_field->intrinsics[0];
@@ -231,7 +232,7 @@ Result<void> FindImages(const OpenOptions& options, const fs::path& path, LightF
   if (factor != 1)
     LogInfo(
         "{}: image files are {:.4g} times as large as the calibration says, such as {} x {} pixels "
-        "instead of {} x {}: the intrinsics are scaled accordingly (see --image-scale)",
+        "instead of {} x {}: the intrinsics are scaled accordingly (see {{image_scale}})",
         path.string(), factor, light_field->intrinsics[0].width_px,
         light_field->intrinsics[0].height_px, before.width_px, before.height_px);
   return {};
@@ -242,7 +243,7 @@ Result<void> FindMasks(const OpenOptions& options, LightField* light_field) {
   std::vector<std::string> masks = MasksIn(fs::absolute(*options.masks_folder), *light_field);
   if (masks.empty())
     return InputError(fmt::format(
-        "--masks {}: holds no mask of an image, such as {}.png for {}: give the folder of the "
+        "{{masks {}}}: holds no mask of an image, such as {}.png for {}: give the folder of the "
         "masks",
         options.masks_folder->string(), fs::path(light_field->image_names[0]).filename().string(),
         light_field->image_names[0]));
@@ -259,7 +260,7 @@ Result<void> CompleteAlpha(const OpenOptions& options, const fs::path& path,
   if (options.alpha && HoldsPackedStore(*light_field) &&
       was_light != (*options.alpha != AlphaMeaning::kMask))
     return UsageError(
-        fmt::format("--image-alpha {}: {} is a packed store, whose alpha was stored as {} and "
+        fmt::format("{{image_alpha {}}}: {} is a packed store, whose alpha was stored as {} and "
                     "cannot be changed: compress the original image files again with this option",
                     NameOf(*options.alpha), path.string(), was_light ? "opacity" : "a mask"));
   if (options.alpha) encoding.alpha = options.alpha;
@@ -274,34 +275,34 @@ Result<void> CompleteAlpha(const OpenOptions& options, const fs::path& path,
       const std::string meaning =
           TextOfAlpha(*encoding.alpha, encoding.Background(), encoding.keeps_opacity);
       if (found->is_sure)
-        LogInfo("{}: alpha is taken as {}, because {} (--image-alpha overrides this)",
+        LogInfo("{}: alpha is taken as {}, because {} ({{image_alpha}} overrides this)",
                 path.string(), meaning, found->reason);
       else
         LogWarning(
             "{}: the program is not sure what alpha means: {}. Alpha is taken as {}. If edges or "
-            "surroundings look wrong, add --image-alpha mask, straight or premultiplied",
+            "surroundings look wrong, add {{image_alpha mask}}, straight or premultiplied",
             path.string(), found->reason, meaning);
     }
   }
   if (!encoding.background) return {};
   if (encoding.keeps_opacity && encoding.bayer != BayerPattern::kNone)
-    return UsageError(
-        fmt::format("--background {}: the LF images of {} are mosaics, which have no alpha: leave "
-                    "the option out",
-                    kNoBackground, path.string()));
+    return UsageError(fmt::format(
+        "{{background {}}}: the LF images of {} are mosaics, which have no alpha: leave "
+        "the option out",
+        kNoBackground, path.string()));
   if (!encoding.AlphaIsLight())
     return UsageError(fmt::format(
-        "--background: a background has no effect on the LF images of {}, because their alpha is "
+        "{{background}}: a background has no effect on the LF images of {}, because their alpha is "
         "{}: leave the option out{}",
         path.string(), encoding.alpha ? "a mask" : "unknown or absent",
         HoldsPackedStore(*light_field) || encoding.bayer != BayerPattern::kNone
             ? ""
-            : ", or add --image-alpha straight or premultiplied"));
+            : ", or add {image_alpha straight} or premultiplied"));
   const auto& behind = *encoding.background;
   if (*std::max_element(behind.begin(), behind.end()) > encoding.max_radiance)
     return UsageError(
         fmt::format("the background {} of {} is brighter than lf_max_radiance, {}: give a darker "
-                    "one (--background)",
+                    "one ({{background}})",
                     fmt::join(behind, ","), path.string(), encoding.max_radiance));
   return {};
 }
@@ -398,7 +399,7 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
     if (names == StanfordNames::kSeries)
       series = fmt::format(
           "; the names in {} end in two numbers, but not in those of a grid of cameras: if they "
-          "are rows and columns, give their distance to lfimport (--pitch)",
+          "are rows and columns, give their distance to lfimport ({{pitch}})",
           folder.string());
   }
   const std::vector<fs::path> stores = PackedStoresIn(path);

@@ -42,7 +42,7 @@ TEST_F(OpenLightFieldTest, PackedStoresRefuseOptionsOfImageFiles) {
   EXPECT_EQ(error({}).kind, ErrorKind::kInput);
   const Error refused = error({.image_scale = {ImageScale::Kind::kFactor, 0.5}});
   EXPECT_EQ(refused.kind, ErrorKind::kUsage);
-  EXPECT_NE(refused.message.find("--image-scale"), std::string::npos) << refused.message;
+  EXPECT_NE(refused.message.find("{image_scale}"), std::string::npos) << refused.message;
 }
 
 TEST_F(OpenLightFieldTest, TakesStanfordNamesInTheFolderOrInItsImages) {
@@ -154,7 +154,7 @@ TEST_F(OpenLightFieldTest, TakesPosesOfAirborneOpticalSectioningByContent) {
     EXPECT_NEAR(light_field->intrinsics[0].fx_px, 4, 1e-12);
     const Result<LightField> without = OpenLightField(path);
     ASSERT_FALSE(without);
-    EXPECT_NE(without.error().message.find("--fov-deg"), std::string::npos);
+    EXPECT_NE(without.error().message.find("{fov_deg}"), std::string::npos);
   }
   EXPECT_EQ(OpenLightField(folder_, {.focal_px = 7}).error().kind, ErrorKind::kUsage);
   fs::create_directories(folder_ / "elsewhere");

@@ -74,7 +74,7 @@ TEST_F(RawEncodingTest, WrittenDownItNeedsNoFile) {
 TEST_F(RawEncodingTest, APatternThatNobodyTellsIsAskedFor) {
   const Result<LightField> untold = Open(Dng("RGBG"));
   ASSERT_FALSE(untold);
-  EXPECT_NE(untold.error().message.find("lfimport --bayer RGGB"), std::string::npos);
+  EXPECT_NE(untold.error().message.find("{lfimport bayer RGGB}"), std::string::npos);
   EXPECT_NE(untold.error().message.find("a.dng"), std::string::npos);
   const Result<LightField> told = Open(Dng("RGBG"), "", {.bayer = BayerPattern::kBggr});
   ASSERT_TRUE(told) << told.error().message;

@@ -137,7 +137,7 @@ Result<void> FindImages(const AosOptions& options, const fs::path& path, LightFi
   for (const fs::path& folder : folders) tried.push_back(folder.string());
   return InputError(
       fmt::format("{}: the first image, {}, is in none of the folders {}: give the folder of the "
-                  "images (--images)",
+                  "images ({{images}})",
                   path.string(), first, fmt::join(tried, ", ")));
 }
 
@@ -189,11 +189,11 @@ Result<LightField> ReadAos(const fs::path& path, const AosOptions& options) {
   if (!options.fov_deg)
     return InputError(fmt::format(
         "{}: holds poses of Airborne Optical Sectioning, which do not state the field of view: "
-        "give it in degrees (--fov-deg; AOS's own programs take 43.10803984 or 50.81543622)",
+        "give it in degrees ({{fov_deg}}; AOS's own programs take 43.10803984 or 50.81543622)",
         path.string()));
   if (!(*options.fov_deg >= 0.01 && *options.fov_deg <= 179))
     return UsageError(
-        fmt::format("--fov-deg is {}: expected degrees from 0.01 to 179", *options.fov_deg));
+        fmt::format("{{fov_deg {}}}: expected degrees from 0.01 to 179", *options.fov_deg));
   LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(path, kMaxFileSize));
   LF_ASSIGN_OR_RETURN(LightField light_field, ParseAosPoses(text, path));
   LF_RETURN_IF_ERROR(FindImages(options, path, &light_field));

@@ -155,7 +155,7 @@ TEST_F(AosFolderTest, ImagesAreSearchedBesideAndMayBePngInsteadOfTiff) {
 
   const std::string error = ErrorOf({.fov_deg = 50, .images_folder = folder_ / "elsewhere"});
   EXPECT_NE(error.find("a.tiff, is in none of the folders"), std::string::npos) << error;
-  EXPECT_NE(error.find("elsewhere: give the folder of the images (--images)"), std::string::npos);
+  EXPECT_NE(error.find("elsewhere: give the folder of the images ({images})"), std::string::npos);
   WriteImageFile(folder_ / "elsewhere" / "a.tiff", 6, 6);
   const Result<LightField> elsewhere =
       ReadAos(path_, {.fov_deg = 50, .images_folder = folder_ / "elsewhere"});
@@ -178,7 +178,7 @@ TEST_F(AosFolderTest, MovedImagesAreFoundByTheirNames) {
 
 TEST_F(AosFolderTest, WithoutAFieldOfViewItAsksForIt) {
   WriteImageFile(folder_ / "images" / "a.tiff", 8, 8);
-  EXPECT_NE(ErrorOf({}).find("(--fov-deg"), std::string::npos);
+  EXPECT_NE(ErrorOf({}).find("({fov_deg}"), std::string::npos);
   for (const double fov_deg : {0.0, -40.0, 180.0, std::nan("")}) {
     const Result<LightField> light_field = ReadAos(path_, {.fov_deg = fov_deg});
     ASSERT_FALSE(light_field);

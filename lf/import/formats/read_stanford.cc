@@ -162,12 +162,13 @@ Result<void> CheckOptions(const StanfordOptions& options) {
   const Vec2 pitch_w = options.pitch_w.value_or(Vec2(1, 1));
   if (!is_length(pitch_w.x()) || !is_length(pitch_w.y()))
     return UsageError(
-        fmt::format("the pitch (--pitch) is {}, {} world units: expected above 0 and at most 1e9",
+        fmt::format("the pitch ({{pitch}}) is {}, {} world units: expected above 0 and at most 1e9",
                     pitch_w.x(), pitch_w.y()));
   if (!is_length(options.plane_distance_w.value_or(1)))
-    return UsageError(fmt::format(
-        "the plane distance (--plane-distance) is {} world units: expected above 0 and at most 1e9",
-        *options.plane_distance_w));
+    return UsageError(
+        fmt::format("the plane distance ({{plane_distance}}) is {} world units: expected above 0 "
+                    "and at most 1e9",
+                    *options.plane_distance_w));
   return {};
 }
 
@@ -177,7 +178,8 @@ Result<void> CheckComplete(const fs::path& folder, const std::vector<StanfordIma
   if (!options.pitch_w && !images[0].name.position)
     return InputError(fmt::format(
         "{}: the names contain row and column, but neither positions nor the focal length ({}): "
-        "state the pitch and the focal length, and --plane-distance if the images may be rectified "
+        "state the pitch and the focal length, and {{plane_distance}} if the images may be "
+        "rectified "
         "to one plane, for instance by: {}",
         folder.string(), images[0].file_name,
         ImportCommand(folder, images, options, true, width_px)));
@@ -191,12 +193,12 @@ Result<void> CheckComplete(const fs::path& folder, const std::vector<StanfordIma
         fmt::format("{}: the name {} contains focal length and sensor width, {} does not: rename "
                     "all files to the form {}",
                     folder.string(), with->file_name, without->file_name, kNameForm));
-  return InputError(
-      fmt::format("{}: the names lack the focal length: {} has no _FOCALMM_SENSORMM at its end; "
-                  "give it in pixels (--focal-px), or state it once, and --plane-distance if the "
-                  "images may be rectified to one plane, for instance by: {}",
-                  folder.string(), without->file_name,
-                  ImportCommand(folder, images, options, !images[0].name.position, width_px)));
+  return InputError(fmt::format(
+      "{}: the names lack the focal length: {} has no _FOCALMM_SENSORMM at its end; "
+      "give it in pixels ({{focal_px}}), or state it once, and {{plane_distance}} if the "
+      "images may be rectified to one plane, for instance by: {}",
+      folder.string(), without->file_name,
+      ImportCommand(folder, images, options, !images[0].name.position, width_px)));
 }
 
 // Returns the positions of the cameras in their common plane, in world units.
@@ -232,7 +234,7 @@ Result<Intrinsics> IntrinsicsOf(const StanfordName& name, const ImageFileInfo& i
   if (!(k.fx_px >= 0.001 && k.fx_px <= 1e7))
     return InputError(
         fmt::format("the computed focal length is {} px: expected 0.001 to 1e7 px: correct "
-                    "--focal-px, or the focal length and sensor width in the file name",
+                    "{{focal_px}}, or the focal length and sensor width in the file name",
                     k.fx_px));
   k.fy_px = k.fx_px;
   const Vec2 shift_px =
@@ -290,7 +292,7 @@ Result<LightField> ReadStanfordFolder(const fs::path& folder, const StanfordOpti
     if (!(centre.cwiseAbs().maxCoeff() <= kLargest_w))
       return InputError(
           fmt::format("{}: its camera is at ({}, {}): expected positions within +-1e12 world "
-                      "units: correct --pitch, or the position in the file name",
+                      "units: correct {{pitch}}, or the position in the file name",
                       (folder / image.file_name).string(), centre.x(), centre.y()));
     LfCamera camera;
     camera.intrinsics_index = distinct.IndexOf(*k);

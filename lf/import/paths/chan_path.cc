@@ -106,13 +106,13 @@ Result<ForeignPath> ParseChan(ByteStream stream, const PathOptions& options) {
     return InputError(fmt::format("{}: has no frames: {}", stream.path().string(), kColumns));
   if (states_fov && options.focal_length_mm)
     return UsageError(
-        fmt::format("--focal-length-mm is only for .chan files without a field of view, but {} "
+        fmt::format("{{focal_length_mm}} is only for .chan files without a field of view, but {} "
                     "states it: leave the option out",
                     stream.path().string()));
   if (lacks_fov && !options.focal_length_mm)
     path.lacks.push_back(
         fmt::format("no field of view (that of a lens of {} mm is used: "
-                    "--focal-length-mm)",
+                    "{{focal_length_mm}})",
                     kDefaultFocalLength_mm));
   return path;
 }

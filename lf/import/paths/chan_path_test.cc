@@ -75,7 +75,7 @@ TEST(ChanPath, WithoutAFieldOfViewALensIsUsed) {
   ASSERT_TRUE(path);
   EXPECT_NEAR(path->cameras[0].pinhole.intrinsics.fx_px, 1000, 1e-9);  // 720 * 50 / 36
   ASSERT_EQ(path->lacks.size(), 1u);
-  EXPECT_NE(path->lacks[0].find("--focal-length-mm"), std::string::npos);
+  EXPECT_NE(path->lacks[0].find("{focal_length_mm}"), std::string::npos);
   PathOptions lens = plate;
   lens.focal_length_mm = 24;
   lens.sensor_width_mm = 12;

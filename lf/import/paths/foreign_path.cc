@@ -44,8 +44,8 @@ double DefaultFocus(const PathOptions& options, ForeignPath* path) {
   }
   path->lacks.push_back(
       distance_w == 1
-          ? "no focus distance (1 world unit is used: --focus-distance)"
-          : fmt::format("no focus distance ({:.4g} world units{} are used: --focus-distance)",
+          ? "no focus distance (1 world unit is used: {focus_distance})"
+          : fmt::format("no focus distance ({:.4g} world units{} are used: {{focus_distance}})",
                         distance_w, source));
   return distance_w;
 }
@@ -68,13 +68,13 @@ Defaults DefaultsFor(double unit_m, const PathOptions& options, ForeignPath* pat
   defaults.sensor_width_w = kDefaultSensorWidth_mm * (1e-3 / unit_m);
   if (!AllState(*path, &ForeignCamera::aperture_diameter_w) && !options.f_number &&
       !options.aperture_diameter_mm)
-    path->lacks.push_back("no aperture (a pinhole is used: --f-number or --aperture-diameter-mm)");
+    path->lacks.push_back("no aperture (a pinhole is used: {f_number} or {aperture_diameter_mm})");
   if (!AllState(*path, &ForeignCamera::focus_distance_w))
     defaults.focus_distance_w =
         options.focus_distance_w ? *options.focus_distance_w : DefaultFocus(options, path);
   if (!AllState(*path, &ForeignCamera::sensor_width_w) && !options.sensor_width_mm)
-    path->lacks.push_back(
-        fmt::format("no sensor width ({} mm are used: --sensor-width-mm)", kDefaultSensorWidth_mm));
+    path->lacks.push_back(fmt::format("no sensor width ({} mm are used: {{sensor_width_mm}})",
+                                      kDefaultSensorWidth_mm));
   return defaults;
 }
 
@@ -164,13 +164,13 @@ void Replace(const PathOptions& options, RenderCamera* camera) {
 
 double FpsOr(const PathOptions& options, ForeignPath* path) {
   if (!options.fps)
-    path->lacks.push_back(fmt::format("no frames per second ({} are used: --fps)", kDefaultFps));
+    path->lacks.push_back(fmt::format("no frames per second ({} are used: {{fps}})", kDefaultFps));
   return options.fps.value_or(kDefaultFps);
 }
 
 std::array<int, 2> ResolutionOr(const PathOptions& options, ForeignPath* path) {
   if (!options.resolution_px)
-    path->lacks.push_back(fmt::format("no resolution ({}x{} is used: --resolution)",
+    path->lacks.push_back(fmt::format("no resolution ({}x{} is used: {{resolution}})",
                                       kDefaultResolution_px[0], kDefaultResolution_px[1]));
   return options.resolution_px.value_or(kDefaultResolution_px);
 }
@@ -237,7 +237,7 @@ Result<void> ReplaceQuantities(const PathOptions& options, const std::filesystem
                                CameraPath* path) {
   if (options.f_number && options.aperture_diameter_mm)
     return UsageError(
-        "--f-number and --aperture-diameter-mm state the same quantity: leave one of them out");
+        "{f_number} and {aperture_diameter_mm} state the same quantity: leave one of them out");
   const auto replace = [&](size_t index, RenderCamera* camera) -> Result<void> {
     Replace(options, camera);
     const std::string fault = FaultOf(*camera);

@@ -37,7 +37,7 @@ Result<void> CheckSizes(const ForeignPath& path, const fs::path& file, const Pat
     if (k.width_px != first.width_px || k.height_px != first.height_px)
       return InputError(fmt::format(
           "{}: camera {} has {} x {} pixels, but the first has {} x {}, and the frames of a film "
-          "have one size: state it (lfpath --resolution)",
+          "have one size: state it ({{lfpath resolution}})",
           file.string(), i + 1, k.width_px, k.height_px, first.width_px, first.height_px));
   }
   if (first.width_px > kLargestPlateSide_px || first.height_px > kLargestPlateSide_px)

@@ -68,7 +68,7 @@ TEST(SplatCameras, ImagesOfDifferentSizesNeedAResolution) {
   two.back() = ',';
   two += With(With(kSplatText, "[{", "{"), "\"width\": 200", "\"width\": 100");
   ExpectPathError(ParsedSplat(two), "cameras.json",
-                  {"camera 2 has 100 x 100 pixels", "lfpath --resolution"});
+                  {"camera 2 has 100 x 100 pixels", "{lfpath resolution}"});
   const PathOptions options = {.resolution_px = std::array<int, 2>{100, 50}};
   Result<ForeignPath> read = ParseSplatCameras(two, "cameras.json", options);
   ASSERT_TRUE(read) << read.error().message;

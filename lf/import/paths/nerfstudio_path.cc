@@ -137,7 +137,7 @@ Result<void> UndoTraining(const fs::path& file, const PathOptions& options, bool
   fs::path dataparser = options.dataparser_transforms;
   if (is_world && !dataparser.empty())
     return UsageError(fmt::format(
-        "--dataparser-transforms {}: {} states that its cameras are in the world of the "
+        "{{dataparser_transforms {}}}: {} states that its cameras are in the world of the "
         "light field (lf_space): leave the option out",
         dataparser.string(), file.string()));
   if (is_world) return {};
@@ -146,7 +146,7 @@ Result<void> UndoTraining(const fs::path& file, const PathOptions& options, bool
     if (!fs::exists(dataparser, error)) {
       path->lacks.push_back(
           fmt::format("nothing about the space in which nerfstudio trained (the world of the light "
-                      "field is assumed: put {} beside the path, or --dataparser-transforms)",
+                      "field is assumed: put {} beside the path, or {{dataparser_transforms}})",
                       kDataparserName));
       return {};
     }

@@ -161,11 +161,11 @@ Result<size_t> FrameCount(const NgpHead& head, const fs::path& file, const PathO
   if (!(count <= kMostFrames))
     return InputError(
         fmt::format("{}: {} s at {} frames per second are more than {} frames: give "
-                    "their number (lfpath --frames)",
+                    "their number ({{lfpath frames}})",
                     file.string(), head.duration_s, path->fps, kMostFrames));
   const size_t frames = std::max(size_t{1}, static_cast<size_t>(count));
-  path->lacks.push_back(fmt::format("no number of frames ({} are used, for {} s: --frames)", frames,
-                                    head.duration_s));
+  path->lacks.push_back(fmt::format("no number of frames ({} are used, for {} s: {{frames}})",
+                                    frames, head.duration_s));
   return frames;
 }
 

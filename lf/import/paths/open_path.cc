@@ -44,13 +44,13 @@ Result<ForeignPath> ReadForeign(const PathPlace& place, const PathOptions& optio
 // Refuses options that would have no effect.
 Result<void> CheckOptions(PathKind kind, const fs::path& path, const PathOptions& options) {
   if (!options.dataparser_transforms.empty() && kind != PathKind::kNerfstudio)
-    return UsageError(
-        fmt::format("--dataparser-transforms is only for camera paths of nerfstudio, but {} is of "
-                    "another kind: leave the option out",
-                    path.string()));
+    return UsageError(fmt::format(
+        "{{dataparser_transforms}} is only for camera paths of nerfstudio, but {} is of "
+        "another kind: leave the option out",
+        path.string()));
   if (options.focal_length_mm && kind != PathKind::kChan)
     return UsageError(
-        fmt::format("--focal-length-mm is only for .chan files without a field of view, but {} "
+        fmt::format("{{focal_length_mm}} is only for .chan files without a field of view, but {} "
                     "states it: leave the option out",
                     path.string()));
   return {};

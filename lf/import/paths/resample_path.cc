@@ -114,22 +114,22 @@ Result<CameraPath> ResamplePath(const CameraPath& path, std::optional<double> fp
   const double new_fps = fps.value_or(path.fps);
   const auto views = static_cast<uint32_t>(path.views);
   if (frame_count && *frame_count % views != 0)
-    return UsageError(
-        fmt::format("--frames {}: the path has {} views of each moment, which are frames of their "
-                    "own: expected a multiple of {}",
-                    *frame_count, views, views));
+    return UsageError(fmt::format(
+        "{{frames {}}}: the path has {} views of each moment, which are frames of their "
+        "own: expected a multiple of {}",
+        *frame_count, views, views));
   // Number of new moments.
   const double count =
       frame_count ? *frame_count / views : std::floor(last / path.fps * new_fps + kSamePlace) + 1;
   if (!(count * views <= kMostFrames))
-    return UsageError(fmt::format("--fps {} makes {} frames of the path: expected at most {}",
+    return UsageError(fmt::format("{{fps {}}} makes {} frames of the path: expected at most {}",
                                   new_fps, count * views, kMostFrames));
   // Distance of two new moments, in old moments.
   const double step = frame_count ? last / std::max(count - 1, 1.0) : path.fps / new_fps;
   if (path.focal_surface && path.focal_surface->kind == FocalSurfaceSource::Kind::kDepths)
     return InputError(
         "the path has depth pictures as its focal surface, one for each of its frames as they are: "
-        "leave --fps and --frames out, use a height map (focus.kind: height), or remove 'focus' "
+        "leave {fps} and {frames} out, use a height map (focus.kind: height), or remove 'focus' "
         "from the path");
   CameraPath resampled;
   resampled.focal_surface = path.focal_surface;

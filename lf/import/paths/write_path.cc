@@ -200,7 +200,7 @@ Result<std::vector<std::string>> WritePath(const CameraPath& path, const fs::pat
   if (path.views > 1 && !HoldsShift(format))
     return UsageError(fmt::format(
         "{}: the format {} has no place for the {} views of each moment and the shift of "
-        "their plates: use --format yaml, nerfstudio, instant-ngp or usda",
+        "their plates: use {{format yaml}}, nerfstudio, instant-ngp or usda",
         file.string(), NameOf(format), path.views));
   std::vector<std::string> lost;
   LF_ASSIGN_OR_RETURN(const std::string text, TextOf(path, file, format, options, &lost));
