@@ -45,7 +45,7 @@ Result<void> CheckKind(const LightField& light_field) {
   if (light_field.encoding.AlphaIsLight())
     return InputError(
         "alpha is light (lf_alpha), and virtual LF images would need opacities, which are not "
-        "estimated: use --image-alpha mask");
+        "estimated: use {image_alpha mask}");
   if (light_field.encoding.masks_clipped)
     return InputError(
         "the light field has brackets (\"lf_clipped\": \"mask\"), which are not supported: densify "
@@ -146,9 +146,9 @@ Result<void> Densifier::ForEach(const char* step, size_t count,
       const std::lock_guard lock(mutex_);
       if (error) return;
       if (options_.interrupted && *options_.interrupted) {
-        error = Error{
-            ErrorKind::kInterrupted,
-            fmt::format("interrupted after {} of {} ({}): --resume continues", done, count, step)};
+        error = Error{ErrorKind::kInterrupted,
+                      fmt::format("interrupted after {} of {} ({}): {{resume}} continues", done,
+                                  count, step)};
         return;
       }
     }
@@ -178,16 +178,16 @@ Result<void> Densifier::CheckTarget() const {
   LF_ASSIGN_OR_RETURN(const bool is_there, IsStoreThere(store));
   std::error_code error;
   if (is_there && std::filesystem::equivalent(store, light_field_.folder, error))
-    return UsageError(fmt::format("-o {}: is the packed store that is densified: give another name",
-                                  store.string()));
+    return UsageError(fmt::format(
+        "{{output {}}}: is the packed store that is densified: give another name", store.string()));
   if (options_.overwrite) return {};
   if (is_there && !options_.resume)
     return UsageError(
-        fmt::format("{}: exists already: replace it with --overwrite", store.string()));
+        fmt::format("{}: exists already: replace it with {{overwrite}}", store.string()));
   if (PackedStoreWriter::IsUnfinished(store) && !options_.resume)
     return UsageError(fmt::format(
-        "{}: exists already as an unfinished store: continue it with --resume, or start it again "
-        "with --overwrite",
+        "{}: exists already as an unfinished store: continue it with {{resume}}, or start it again "
+        "with {{overwrite}}",
         store.string()));
   return {};
 }
@@ -278,10 +278,10 @@ Result<void> Densifier::Test() {
       MedianPsnrDb(report_.tests) >= kNearlyRightDb
           ? std::string(
                 "The mean is nearly right, because neighbouring LF images differ little: render "
-                "the light field as it is, or try --force")
+                "the light field as it is, or try {force}")
           : fmt::format(
                 "Poses may be wrong, for example where equal patterns were confused, or the depths "
-                "({:.4g} to {:.4g}): check the poses, state --depths, or try --force",
+                "({:.4g} to {:.4g}): check the poses, state {{depths}}, or try {{force}}",
                 1 / plan_.range.greatest, plan_.range.least > 0 ? 1 / plan_.range.least : INFINITY);
   return InputError(fmt::format(
       "{} LF images were left out in turn and made from their neighbours: at {:.0f} dB, the result "
@@ -309,7 +309,7 @@ Result<void> Densifier::OpenWriter() {
     report_.was_there = true;
     const Result<void> same = CheckIsOfPlan(options_.store, all_, plan, true);
     if (same) return {};
-    return Error{same.error().kind, same.error().message + ", or replace it with --overwrite"};
+    return Error{same.error().kind, same.error().message + ", or replace it with {overwrite}"};
   }
   LF_ASSIGN_OR_RETURN(FileLock lock, PackedStoreWriter::Lock(options_.store));
   if (options_.overwrite && !options_.resume)

@@ -76,7 +76,7 @@ Result<void> CheckReach(const LightField& light_field, const DensifyPlan& plan, 
   if ((share > kMostShift || angle_deg > kMostAngle_deg) && !force)
     return InputError(fmt::format(
         "{}: expected at most {:.0f} % and {:.0f} degrees; take photographs at smaller distances, "
-        "or try --force",
+        "or try {{force}}",
         figures, 100 * kMostShift, kMostAngle_deg));
   if (share > kMuchShift || angle_deg > kLargeAngle_deg)
     LogWarning("{}: what virtual LF images show beside outlines will often be wrong", figures);
@@ -172,7 +172,7 @@ Result<void> ChooseVirtual(const LightField& light_field, const DensifyChoices& 
   if (plan->virtual_cameras.empty() && choices.frames.empty())
     return UsageError(fmt::format(
         "no virtual LF camera has room between the {} LF cameras, which are {:.4g} apart, if "
-        "virtual ones are {:.4g} apart: ask for a smaller --spacing, or raise --most ({})",
+        "virtual ones are {:.4g} apart: ask for a smaller {{spacing}}, or raise {{most}} ({})",
         plan->plane.points.size(), recorded_w, plan->distance_w, choices.most_virtual));
   if (plan->virtual_cameras.empty())
     return UsageError(

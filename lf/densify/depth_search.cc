@@ -132,7 +132,7 @@ Result<InverseDepths> FindInverseDepths(const LightField& light_field, const LfI
   if (all.size() < kLeastDepths)
     return InputError(fmt::format(
         "depths of the scene: only {} pixels of {} LF images have a sure depth, expected at least "
-        "{}: the LF images overlap too little or lack texture; state the depths by --depths",
+        "{}: the LF images overlap too little or lack texture; state the depths by {{depths}}",
         all.size(), count, kLeastDepths));
   return RangeOf(std::move(all));
 }

@@ -235,7 +235,7 @@ std::string ContradictionText(const LightField& light_field,
   }
   return text +
          ". Poses are wrong, for example because equal patterns on two sides were confused, or "
-         "exposures differ (lfimport --match-exposure). Densify each group by itself" +
+         "exposures differ ({lfimport match_exposure}). Densify each group by itself" +
          commands;
 }
 

@@ -148,7 +148,7 @@ void TellSparse(ExampleMove move, double spacing_w, const std::string& copies,
     example->move_warning = fmt::format(
         "the LF cameras are far apart ({}): where the camera passes between them, the film shows "
         "the pictures of several. Put virtual LF images between the recorded ones (lfdensify, "
-        "or lfrenderer --densify), or record more",
+        "or {{lfrenderer densify}}), or record more",
         copies);
 }
 
@@ -253,7 +253,7 @@ Result<CameraMove> MoveCamera(const LightField& light_field, LfImageId id, const
   } else {
     const Result<RecordedTrack> track = FindTrack(light_field, id);
     if (!track)
-      return InputError(fmt::format("{}: let the camera move in another way (--move orbit)",
+      return InputError(fmt::format("{}: let the camera move in another way ({{move orbit}})",
                                     track.error().message));
     moved = MakeAlong(light_field, *track, shot);
   }
@@ -262,13 +262,13 @@ Result<CameraMove> MoveCamera(const LightField& light_field, LfImageId id, const
   if (!(visible_px >= kVisible_px))
     return InputError(fmt::format(
         "at LF camera {} the camera has no room for a visible movement: {}. Begin at another LF "
-        "camera (--camera), or let the camera stand (--move focus-pull)",
+        "camera ({{camera}}), or let the camera stand ({{move focus-pull}})",
         id.value, moved.limit));
   if (visible_px < std::max(kClear_px, kClear * shot.frame.width_px) && moved.warning.empty())
     moved.warning = fmt::format(
         "the movement will hardly be visible, because it changes the picture by {:.2g} of {} "
-        "elements: record from positions farther apart, or let the camera stand (--move "
-        "focus-pull)",
+        "elements: record from positions farther apart, or let the camera stand "
+        "({{move focus-pull}})",
         visible_px, shot.frame.width_px);
   return moved;
 }
@@ -282,7 +282,7 @@ std::string OtherMove(const LightField& light_field, LfImageId id, const Example
     const Shot shot = ShotOf(light_field, id, focus, spacing_w, aperture, move, &ignored);
     const Result<CameraMove> moved = MoveCamera(light_field, id, shot, move);
     if (moved && moved->warning.empty())
-      return fmt::format("; --move {} moves the camera instead", name);
+      return fmt::format("; {{move {}}} moves the camera instead", name);
   }
   return "";
 }

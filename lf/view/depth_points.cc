@@ -137,10 +137,11 @@ Result<DepthPoints> ReadDepthMap(const fs::path& file, const Vec3& origin, doubl
       ++(std::isinf(z) ? points.unknown_count : points.count_in_file);
     }
   if (points.count_in_file == 0)
-    return InputError(fmt::format(
-        "{}: no element has a depth: make the map with other distances (--near, --far), a wider "
-        "lens or a lower --confidence of lffocus depth",
-        name));
+    return InputError(
+        fmt::format("{}: no element has a depth: make the map with other distances ({{near}}, "
+                    "{{far}}), a wider "
+                    "lens or a lower {{confidence}} of lffocus depth",
+                    name));
   points.has_confidence = channels.confidence >= 0;
   points.has_colours = channels.has_colours();
   points.centre = camera.centre - origin;

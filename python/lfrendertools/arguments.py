@@ -2,32 +2,18 @@
 """Checks of arguments, so that errors name the argument and say what is expected."""
 from __future__ import annotations
 
-import contextlib
 import math
 import operator
 import os
-import re
 import sys
 from typing import Any, Iterator, Sequence, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
 
-from .errors import Error, UsageError
+from .errors import UsageError
 
 FilePath = Union[str, "os.PathLike[str]"]
-
-# A call of a program, which stays as it is, or an option of the programs that is an argument here.
-_WORDS = re.compile(
-    r"\blf[a-z]+ [^,;:)]*--?[a-z][^,;:)]*|"
-    r"--(alpha|balance|bayer|background|calibration-only|capture|count|depths|distance|distortion|estimator|"
-    r"fill|filter|fisheye|flip-x|flip-y|focal-px|format|fov|fov-deg|frames|frames-per-package|image-alpha|"
-    r"image-scale|images|jitter|lens-weights|levels|lf-pixels|max-angle|max-angle-deg|max-images|memory|mode|noise|"
-    r"order|overwrite|packages|pitch|plane-distance|profile|quantizer|resume|samples|seed|shard-size|"
-    r"smooth-below|spacing|stop-when|strict|target-psnr|threads|threshold|truth|truth-samples|verify)(?![\w-])|"
-    r"--no-guard|another -o\b")
-_OTHER_WORDS = {"--no-guard": "guard=False", "another -o": "another folder", "--max-angle": "max_angle_deg",
-                "--packages": "count"}
 
 
 def whole(name: str, value: Any) -> int:
@@ -192,21 +178,3 @@ def file_name(name: str, path: Any) -> bytes:
     if b"\0" in encoded:
         raise UsageError(f"{name}={os.fsdecode(encoded)!r}: a path has no character 0")
     return encoded
-
-
-def _argument_for(found: "re.Match[str]") -> str:
-    option = found[0]
-    if option.startswith("lf"):
-        return option
-    return _OTHER_WORDS.get(option, option[2:].replace("-", "_"))
-
-
-@contextlib.contextmanager
-def naming_arguments() -> Iterator[None]:
-    """Let errors of the library name arguments instead of options of programs."""
-    try:
-        yield
-    except Error as error:
-        words = _WORDS.sub(_argument_for, str(error))
-        # A message that explains which option a word is names it once.
-        raise type(error)(re.sub(r"\b(\w+)( [\w.+-]+)? \(\1\)", r"\1\2", words)) from None

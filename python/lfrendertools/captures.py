@@ -226,7 +226,7 @@ def compress(field: LightField, store: FilePath, *, profile: str = "default", th
         codec.target_psnr = arguments.within("target_psnr", target_psnr, 10, 90)
     if levels is not None:
         codec.levels = arguments.whole_within("levels", levels, 1, 5)
-    with arguments.naming_arguments(), telling(checked(progress)) as tell:
+    with telling(checked(progress)) as tell:
         facts = _facts(_core.compress(_checked(field)._core, os.fsencode(field.source), codec, words,
                                       arguments.thread_count(threads), tell))
     if facts["lf_images_skipped"]:
@@ -344,7 +344,7 @@ def synth(scene: str, folder: FilePath, *, capture: str = "planar", count: Optio
         if truth._shutter is not None:
             _, words.truth_instants, words.truth_cameras = truth._shutter
     file = b"" if truth is None or isinstance(truth, Path) else arguments.file_name("truth", truth)
-    with arguments.naming_arguments(), telling(checked(progress), "files") as tell:
+    with telling(checked(progress), "files") as tell:
         _core.synth(words, file, arguments.thread_count(threads), tell)
     return opening.open(folder)
 
@@ -376,7 +376,7 @@ def _preprocess(field: LightField, path: Union[Path, Camera], frames: Frames, wo
             raise UsageError(f"depths={depths!r}: expected a near depth above 0 and a far depth beyond it")
         words.depths = (near, far)
     film = film_words(options, {})
-    with arguments.naming_arguments(), telling(progress, "steps") as tell:
+    with telling(progress, "steps") as tell:
         facts = _facts(_core.preprocess(
             field._core, os.fsencode(field.source), [camera._core for camera in cameras], cameras.fps,
             cameras._shutter, frame_numbers(frames, len(cameras)), film, words, arguments.thread_count(threads), tell))

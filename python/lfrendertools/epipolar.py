@@ -114,10 +114,9 @@ def epi(field: LightField, *, row: Optional[int] = None, column: Optional[int] =
     chosen = None if count is None else arguments.whole_within("count", count, 2, _MOST_LINES)
     within = None if tolerance is None else arguments.positive("tolerance", tolerance)
     focus = None if focus_distance is None else arguments.positive("focus_distance", focus_distance)
-    with arguments.naming_arguments():
-        rgb, positions, ids, made, focal_px, direction, rotation, missing = _core.epi(
-            field._core, row is not None, pixel, _id_of(field, through), within, focus, kind, chosen,
-            arguments.flag("strict", strict), arguments.thread_count(threads))
+    rgb, positions, ids, made, focal_px, direction, rotation, missing = _core.epi(
+        field._core, row is not None, pixel, _id_of(field, through), within, focus, kind, chosen,
+        arguments.flag("strict", strict), arguments.thread_count(threads))
     warn_of_missing(missing, stacklevel=3)
     return EpipolarPicture(rgb, np.array(positions), np.array(ids), _LINES[made], focal_px, direction, rotation)
 

@@ -125,9 +125,8 @@ class Frame:
             ends = " or ".join(end for end, kind in _FORMATS.items() if format is None or chosen.startswith(kind))
             raise UsageError(f"{name}: expected a name that ends in {ends}" if ends else
                              f"format={format!r}: expected exr, exr-float, png or png16")
-        with arguments.naming_arguments():
-            self._core.save(os.fsencode(name), chosen, arguments.text("colour_space", colour_space),
-                            arguments.flag("alpha", alpha))
+        self._core.save(os.fsencode(name), chosen, arguments.text("colour_space", colour_space),
+                        arguments.flag("alpha", alpha))
 
     def _repr_png_(self) -> bytes:
         return _core.encode_png(self.display())
@@ -153,8 +152,7 @@ class Plate:
     @classmethod
     def load(cls, path: FilePath) -> Plate:
         """Read a plate that :meth:`save`, `lfrenderer --keep-plates` or `lfrenderer --shard` has written."""
-        with arguments.naming_arguments():
-            return cls(_core.Plate.load(arguments.file_name("path", path)))
+        return cls(_core.Plate.load(arguments.file_name("path", path)))
 
     def save(self, path: FilePath) -> None:
         """Write the plate with all that :meth:`load` and :meth:`develop` need (doc/formats/plate.md).
@@ -164,8 +162,7 @@ class Plate:
         path : path
             The file. It appears only when it is whole.
         """
-        with arguments.naming_arguments():
-            self._core.save(arguments.file_name("path", path))
+        self._core.save(arguments.file_name("path", path))
 
     @property
     def sums(self) -> npt.NDArray[np.uint64]:

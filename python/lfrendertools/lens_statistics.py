@@ -100,7 +100,7 @@ def through(field: LightField, camera: Union[Camera, Path], statistic: str = "me
     if not 0 <= share < 0.5:
         raise UsageError(f"trim={trim!r}: expected a share from 0 to below 0.5: the statistic 'median' is the limit")
     angle = None if max_angle_deg is None else arguments.positive("max_angle_deg", max_angle_deg, 180)
-    with telling(checked(progress), "LF images") as tell, arguments.naming_arguments():
+    with telling(checked(progress), "LF images") as tell:
         made, skipped = _core.through(
             field._core, number, cameras[number - 1]._core, cameras.fps, statistic, share,
             arguments.choice("order", order, ("channels", "luminance")), arguments.choice("filter", filter, _FILTERS),

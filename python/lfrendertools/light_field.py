@@ -218,8 +218,7 @@ class LightField:
         if arguments.flag("stored", stored):
             values = read_image(self._core.image_file(i))
             return values if part is None else values[_part_of(values, part)]
-        with arguments.naming_arguments():
-            return self._core.image(i, part, arguments.real("masked", masked))
+        return self._core.image(i, part, arguments.real("masked", masked))
 
     def images(self, ids: Optional[Iterable[int]] = None, ahead: int = 8, *, masked: float = float("nan"),
                stored: bool = False, strict: bool = False) -> Iterator[Tuple[int, npt.NDArray[Any]]]:
@@ -363,11 +362,10 @@ class LightField:
 
     def _example(self, move: str, start: Optional[int], focus_distance: Optional[float]) -> Tuple[CameraPath, str]:
         """Return a first path, and the reason why its focus may be wrong; "" if it is sure."""
-        with arguments.naming_arguments():
-            text, doubt = self._core.example(
-                os.fsencode(self._source), arguments.text("move", move),
-                None if start is None else arguments.index("start", start),
-                None if focus_distance is None else arguments.positive("focus_distance", focus_distance, 1e9))
+        text, doubt = self._core.example(
+            os.fsencode(self._source), arguments.text("move", move),
+            None if start is None else arguments.index("start", start),
+            None if focus_distance is None else arguments.positive("focus_distance", focus_distance, 1e9))
         return CameraPath.parse(text, self._source, self.unit_m), doubt
 
     def _warn_of_focus(self, doubt: str) -> None:

@@ -64,15 +64,14 @@ def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[
     if pitch is not None:
         pair = arguments.numbers("pitch", pitch if hasattr(pitch, "__len__") else (pitch, pitch), 2, 2)
         pitch = (pair[0], pair[1])
-    with arguments.naming_arguments():
-        core = _core.open_light_field(
-            os.fsencode(source), 0.0 if focal_px is None else arguments.positive("focal_px", focal_px),
-            0.0 if fov_deg is None else arguments.positive("fov_deg", fov_deg),
-            b"" if images is None else os.fsencode(_absolute("images", images)),
-            arguments.text("image_scale", image_scale), arguments.choice("image_alpha", image_alpha, _ALPHAS),
-            arguments.text("background", background), pitch,
-            None if plane_distance is None else arguments.real("plane_distance", plane_distance),
-            (arguments.flag("flip_x", flip_x), arguments.flag("flip_y", flip_y)))
+    core = _core.open_light_field(
+        os.fsencode(source), 0.0 if focal_px is None else arguments.positive("focal_px", focal_px),
+        0.0 if fov_deg is None else arguments.positive("fov_deg", fov_deg),
+        b"" if images is None else os.fsencode(_absolute("images", images)),
+        arguments.text("image_scale", image_scale), arguments.choice("image_alpha", image_alpha, _ALPHAS),
+        arguments.text("background", background), pitch,
+        None if plane_distance is None else arguments.real("plane_distance", plane_distance),
+        (arguments.flag("flip_x", flip_x), arguments.flag("flip_y", flip_y)))
     return LightField(core, source)
 
 

@@ -390,16 +390,14 @@ class _Film:
         cameras = path_in(field, path)
         own: Dict[str, Any] = {"memory": "8G", "strict": False, "threads": 0}
         words = film_words(options, own)
-        with arguments.naming_arguments():
-            self.core = _core.Film(field._core, [camera._core for camera in cameras], cameras.fps, cameras._shutter,
-                                   frame_numbers(frames, len(cameras)), words, arguments.memory(own["memory"]),
-                                   arguments.flag("strict", own["strict"]), arguments.thread_count(own["threads"]))
+        self.core = _core.Film(field._core, [camera._core for camera in cameras], cameras.fps, cameras._shutter,
+                               frame_numbers(frames, len(cameras)), words, arguments.memory(own["memory"]),
+                               arguments.flag("strict", own["strict"]), arguments.thread_count(own["threads"]))
         self._warned: List[str] = []
         self._done = 0
 
     def begin(self, frames: Sequence[int]) -> None:
-        with arguments.naming_arguments():
-            self.core.begin(list(frames))
+        self.core.begin(list(frames))
 
     def collect_some(self, tell: TellPhase, passes_left: int) -> Iterator[int]:
         """Collect a pass, and yield the indices of its frames, from 0, when they are finished.

@@ -120,8 +120,7 @@ def views(field: LightField, grid: Tuple[int, int], *, focus_distance: Optional[
     if out is not None and file is not None:
         raise UsageError("out and file: expected at most one of them")
     told = checked(progress)
-    with arguments.naming_arguments():
-        height, width, described = _core.describe_views(field._core, columns, rows)
+    height, width, described = _core.describe_views(field._core, columns, rows)
     positions, matrices, poses = (np.array([view[i] for view in described]) for i in range(3))
     made = Views(None, positions.reshape(rows, columns, 2), matrices.reshape(rows, columns, 3, 3),
                  poses.reshape(rows, columns, 3, 4), np.array([view[3] for view in described]).reshape(rows, columns),
@@ -130,7 +129,7 @@ def views(field: LightField, grid: Tuple[int, int], *, focus_distance: Optional[
     with _target(shape, kind, out, file, made) as target:
         def put(view: int, light: npt.NDArray[np.float32]) -> None:
             target[divmod(view, columns)] = _converted(light, values)
-        with arguments.naming_arguments(), telling(told, "views") as tell:
+        with telling(told, "views") as tell:
             distance, missing = _core.make_views(
                 field._core, columns, rows, focus, arguments.memory(memory), arguments.flag("strict", strict),
                 arguments.thread_count(threads), put, tell)

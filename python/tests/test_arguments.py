@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Wrong arguments: errors name the argument, and never the types of C++ or the options of programs."""
 import os
+import re
 import threading
 
 import numpy as np
@@ -222,10 +223,27 @@ def test_commands_of_programs_keep_their_options(tmp_path):
     with pytest.raises(lf.InputError) as error:
         lf.open(tmp_path)
     assert "--pitch 1 --focal-px 16" in str(error.value) and "plane_distance" in str(error.value)
-    refuses(lambda: lf.open(tmp_path, pitch=0, focal_px=20), "the pitch is 0, 0 world units", lf.UsageError)
+    refuses(lambda: lf.open(tmp_path, pitch=0, focal_px=20), r"the pitch \(pitch=\) is 0, 0 world units", lf.UsageError)
     pose = '{"imagefile": "a.png", "M3x4": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]}'
     (tmp_path / "poses.json").write_text('{"images": [' + pose + ']}')
-    refuses(lambda: lf.open(tmp_path / "poses.json"), r"\(fov_deg;", lf.InputError)
+    refuses(lambda: lf.open(tmp_path / "poses.json"), r"\(fov_deg=;", lf.InputError)
+
+
+def test_messages_of_the_library_name_arguments(field, path, tmp_path):
+    for options, words in (
+            ({"mode": "rebin", "max_images": 3}, 'max_images= cannot be used with mode="rebin", in which all frames '
+             'share the rebinned rays of all LF images: leave it out, or use mode="collect"'),
+            ({"mode": "rebin", "smooth_below": 3}, 'mode="rebin" collects no rays, which "samples>=N" (stop_when=, '
+             'require=) and smooth_below= would count: leave these options out, use "noise<=X", or use mode="hybrid"'),
+            ({"mode": "rebin", "slab_forward": (0, 0, 0)}, "slab_forward=(0, 0, 0): expected a direction, with at "
+             "least one number other than 0"),
+            ({"mode": "rebin", "reparameterise": False, "lens_sets": 2}, "reparameterise=False cannot be used with "
+             "lens_sets= above 1: leave one of them out")):
+        refuses(lambda: lf.render(field, path[0], **options), "^" + re.escape(words) + "$", lf.UsageError)
+    lf.compress(field, tmp_path / "a.lfs")
+    refuses(lambda: lf.compress(field, tmp_path / "a.lfs"),
+            r"a\.lfs: exists already: replace it with overwrite=True, or check it with verify=True$", lf.UsageError)
+    refuses(lambda: lf.Plate.load(tmp_path / "a.lfs"), "a.lfs", lf.InputError)
 
 
 def test_a_closed_renderer_says_so(field, path):

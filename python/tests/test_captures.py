@@ -69,7 +69,7 @@ def test_forecast_writes_nothing(field, path, tmp_path, monkeypatch):
 def test_packages_replace_others_only_if_asked(field, path, tmp_path):
     lf.write_packages(field, path, tmp_path, frames_per_package=1)
     assert len(list(tmp_path.glob("*.lfp"))) == 3
-    with pytest.raises(lf.UsageError, match="replace them with overwrite, or give another folder"):
+    with pytest.raises(lf.UsageError, match="replace them with overwrite=True, or give another folder"):
         lf.write_packages(field, path, tmp_path)
     assert len(lf.write_packages(field, path, tmp_path, overwrite=True)["packages"]) == 1
 

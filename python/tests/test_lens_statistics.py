@@ -105,7 +105,7 @@ def test_wrong_arguments_are_refused(wrong, words, field, path):
 def test_lenses_without_an_order_are_refused(field, path):
     with pytest.raises(lf.UsageError, match="shutter"):
         lf.through(field, lf.Path(list(path), path.fps, shutter={"angle_deg": 180, "samples": 4}))
-    with pytest.raises(lf.OutputError, match="^memory 1 MiB is too small"):
+    with pytest.raises(lf.OutputError, match='^memory="1 MiB" is too small'):
         lf.through(field, path, memory="1M")
     with pytest.raises(lf.InputError, match="no LF camera"):
         lf.through(field, path[0].replace(position=(5, 0, -1)))

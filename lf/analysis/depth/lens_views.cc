@@ -144,10 +144,10 @@ Result<std::vector<PixelRect>> LensViews::CutPlate(size_t memory_bytes) const {
     needed = largest(rows);
   }
   if (needed > memory_bytes)
-    return OutputError(
-        fmt::format("--memory {} KiB is too small: the LF images of {} rows of {} elements need at "
-                    "least {} KiB; give more, or compare fewer LF images by --views",
-                    memory_bytes >> 10, rows, width, (needed >> 10) + 1));
+    return OutputError(fmt::format(
+        "{{memory {} KiB}} is too small: the LF images of {} rows of {} elements need at "
+        "least {} KiB; give more, or compare fewer LF images by {{views}}",
+        memory_bytes >> 10, rows, width, (needed >> 10) + 1));
   std::vector<PixelRect> parts;
   for (int y = 0; y < height; y += rows) parts.push_back({0, y, width, std::min(height, y + rows)});
   return parts;

@@ -161,7 +161,7 @@ Result<EpipolarPicture> MakeEpipolarPicture(
   if (light_field.encoding.masks_clipped)
     return InputError(
         "the LF images are brackets, of which each shows only a part of the scene: make epipolar "
-        "pictures of one exposure (lfimport --exclude leaves LF images out)");
+        "pictures of one exposure ({lfimport exclude} leaves LF images out)");
   EpipolarPicture picture;
   LF_ASSIGN_OR_RETURN(picture.line, FindCameraLine(light_field, options.through, options.kind,
                                                    options.tolerance_w));

@@ -30,13 +30,13 @@ std::vector<double> EvenFocusDistances(const DepthRange& range, size_t count);
 
 // Parses a length in world units, such as "0.4", or in millimetres, "400mm". Returns world units.
 // kUsage: the text has another form, or the length is not from kLeastFocusDistance_w to
-// kMostFocusDistance_w; the message begins with `what`, such as "--near".
+// kMostFocusDistance_w; the message begins with `what`, such as "{near}".
 //   unit_m  metres per world unit
 Result<double> ParseFocusDistance(std::string_view text, std::string_view what, double unit_m);
 
 // Parses focus distances as ParseFocusDistance() does, in any order. They are separated by commas,
 // blanks or line breaks; a '#' begins a comment that ends with the line.
-//   what  name in messages, such as "--distances" or the name of a file, which the number of the
+//   what  name in messages, such as "{distances}" or the name of a file, which the number of the
 //         line follows
 // kUsage: a distance is wrong, there is none, or there are more than kMostFocusPlanes.
 Result<std::vector<double>> ParseFocusDistances(std::string_view text, std::string_view what,

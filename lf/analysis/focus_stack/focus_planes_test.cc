@@ -87,10 +87,10 @@ TEST(FocusPlanes, WithinTheFocalLengthNeedALensThatDoesNotBreathe) {
 
 TEST(FocusPlanes, AreParsedInWorldUnitsAndMillimetres) {
   constexpr double kUnit_m = 0.01;
-  EXPECT_EQ(*ParseFocusDistance("0.4", "--near", kUnit_m), 0.4);
-  EXPECT_DOUBLE_EQ(*ParseFocusDistance("400mm", "--near", kUnit_m), 40);
+  EXPECT_EQ(*ParseFocusDistance("0.4", "{near}", kUnit_m), 0.4);
+  EXPECT_DOUBLE_EQ(*ParseFocusDistance("400mm", "{near}", kUnit_m), 40);
   for (const char* wrong : {"", "mm", "0", "-1", "nan", "inf", "1 ", "1m", "2e9", "1e-10"})
-    EXPECT_FALSE(ParseFocusDistance(wrong, "--near", kUnit_m)) << wrong;
+    EXPECT_FALSE(ParseFocusDistance(wrong, "{near}", kUnit_m)) << wrong;
   EXPECT_EQ(*ParseFocusDistances("3,20mm\t1", "LIST", kUnit_m), (std::vector<double>{3, 2, 1}));
   EXPECT_EQ(*ParseFocusDistances("# all\n3 # far\r\n\n 2,\n", "FILE", kUnit_m),
             (std::vector<double>{3, 2}));
@@ -103,7 +103,7 @@ TEST(FocusPlanes, ThatAreWrongAreNamedWithTheirLine) {
   EXPECT_FALSE(ParseFocusDistances(" ,\n# 1\n", "planes.txt", 1));
   std::string many;
   for (size_t i = 0; i <= kMostFocusPlanes; ++i) many += "1,";
-  EXPECT_FALSE(ParseFocusDistances(many, "--distances", 1));
+  EXPECT_FALSE(ParseFocusDistances(many, "{distances}", 1));
 }
 
 // A light field of one LF camera that looks along z, and a scene from 2 to 5 in front of it.

@@ -51,7 +51,7 @@ Result<void> CheckFile(const FocusStackOptions& options) {
   if (!IsOurs(partial))
     return UsageError(fmt::format(
         "{}: is a folder of something else, but the render of {} keeps its state in a folder of "
-        "this name: move it, or give another -o",
+        "this name: move it, or give another {{output}}",
         partial.string(), options.output.string()));
   std::error_code error;
   if (fs::is_directory(options.output, error))
@@ -61,11 +61,11 @@ Result<void> CheckFile(const FocusStackOptions& options) {
                     options.output.string(), options.output.extension().string()));
   if (Exists(options.output) && !folder.overwrite && !(folder.resume && Exists(partial)))
     return UsageError(
-        fmt::format("{}: exists already: give another name, or replace it with --overwrite",
+        fmt::format("{}: exists already: give another name, or replace it with {{overwrite}}",
                     options.output.string()));
   if (FormOfStack(options.output) != FocusStackForm::kVideo) return {};
   LF_RETURN_IF_ERROR(CheckVideoTool());
-  return CheckVideoTarget(options.output, "-o");
+  return CheckVideoTarget(options.output, "{output}");
 }
 
 // Returns the error of a file whose planes are not those of the stack.

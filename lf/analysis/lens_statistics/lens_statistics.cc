@@ -190,7 +190,7 @@ class StatisticMaker {
     const size_t others = plan_.total_bytes + result_bytes;
     if (options_.memory_bytes < others + row_bytes)
       return OutputError(fmt::format(
-          "--memory {} is too small: the values of a row of {} elements in {} LF images, the "
+          "{{memory {}}} is too small: the values of a row of {} elements in {} LF images, the "
           "sums of a frame and two LF images need at least {} MiB",
           ByteText(options_.memory_bytes), width_, order_.size(), (others + row_bytes) / kMiB + 1));
     const size_t rows = (options_.memory_bytes - others) / row_bytes;

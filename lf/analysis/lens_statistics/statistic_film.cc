@@ -115,8 +115,8 @@ class FilmMaker {
     if (state_->finished().empty()) totals_.skipped.clear();
     if (options_.statistic.strict && !totals_.skipped.empty())
       return InputError(fmt::format(
-          "--strict: the unfinished render has left out {} LF images, the first: {}; leave out "
-          "--strict, or start again with --overwrite instead of --resume",
+          "{{strict}}: the unfinished render has left out {} LF images, the first: {}; leave out "
+          "{{strict}}, or start again with {{overwrite}} instead of {{resume}}",
           totals_.skipped.size(), totals_.skipped.front().reason));
     totals_.inputs = state.rays;
     totals_.inputs.insert(totals_.inputs.end(), state.picture.begin(), state.picture.end());

@@ -93,7 +93,7 @@ class ViewMaker {
     LF_ASSIGN_OR_RETURN(
         const DepthRange range,
         FindFocusRange(light_field_, FilmCamera(grid_.Camera(middle), 1, light_field_.unit_m),
-                       pool_, ", by --focus-distance"));
+                       pool_, ", by {focus_distance}"));
     report_.focus_distance_w = EvenFocusDistances(range, 1).front();
     return {};
   }

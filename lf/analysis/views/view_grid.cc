@@ -72,7 +72,8 @@ Result<ViewGrid> ViewGrid::Make(const LightField& light_field, int columns, int 
   if (plane.is_unrolled)
     return InputError(fmt::format(
         "LF cameras look up to {:.0f} degrees away from their mean direction, but the views of a "
-        "grid look in one direction: expected at most {:.0f} degrees (lfimport --exclude leaves LF "
+        "grid look in one direction: expected at most {:.0f} degrees ({{lfimport exclude}} leaves "
+        "LF "
         "images out)",
         plane.widest_deg, kMostTurn_deg));
   ViewGrid grid;

@@ -50,7 +50,7 @@ Result<void> CheckAllIn(const PicturesByName& pictures, const PicturesByName& ot
     if (!others.contains(name))
       return InputError(fmt::format(
           "{}: has no picture {} to compare with {}: add it, or compare what both folders have "
-          "with --common",
+          "with {{common}}",
           folder_of_others.string(), name, file.string()));
   return {};
 }

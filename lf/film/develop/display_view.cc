@@ -97,9 +97,10 @@ Result<std::pair<std::string, Mat3>> SourceOf(const ocio::Config& config, const 
                      LinearFromLinear(Ap0(), PrimariesOf(ColourSpace::kRec709)));
   for (const char* name : kLinearNames)
     if (config.getColorSpace(name)) return std::pair(std::string(name), Mat3(Mat3::Identity()));
-  return UsageError(fmt::format(
-      "--view: {} does not say what linear light is: add the role {}, or a colour space lin_rec709",
-      file, kInterchange));
+  return UsageError(
+      fmt::format("{{view}}: {} does not say what linear light is: add the role {}, or a colour "
+                  "space lin_rec709",
+                  file, kInterchange));
 }
 
 Result<std::shared_ptr<const DisplayView>> OpenView(const std::string& file,
@@ -109,8 +110,8 @@ Result<std::shared_ptr<const DisplayView>> OpenView(const std::string& file,
   config->validate();
   const std::string display =
       asked_display.empty() ? config->getDefaultDisplay() : asked_display.c_str();
-  LF_RETURN_IF_ERROR(CheckName("--display", display, DisplaysOf(*config), file));
-  LF_RETURN_IF_ERROR(CheckName("--view", view, ViewsOf(*config, display), file));
+  LF_RETURN_IF_ERROR(CheckName("{display}", display, DisplaysOf(*config), file));
+  LF_RETURN_IF_ERROR(CheckName("{view}", view, ViewsOf(*config, display), file));
   LF_ASSIGN_OR_RETURN(const auto source, SourceOf(*config, file));
   const auto transform = ocio::DisplayViewTransform::Create();
   transform->setSrc(source.first.c_str());
@@ -130,8 +131,8 @@ Result<std::shared_ptr<const DisplayView>> DisplayView::Open(const std::string& 
   const char* const file = std::getenv("OCIO");
   if (file == nullptr || *file == '\0')
     return UsageError(
-        "--view: the environment variable OCIO is not set: set it to the file config.ocio of the "
-        "OpenColorIO configuration that has the view, or leave --view out");
+        "{view}: the environment variable OCIO is not set: set it to the file config.ocio of the "
+        "OpenColorIO configuration that has the view, or leave {view} out");
   try {
     return OpenView(file, display, view);
   } catch (const ocio::Exception& error) {
@@ -145,7 +146,7 @@ Result<std::shared_ptr<const DisplayView>> DisplayView::Open(const std::string& 
 Result<std::shared_ptr<const DisplayView>> DisplayView::Open(const std::string&,
                                                              const std::string&) {
   return UsageError(
-      "--view: this program was built without OpenColorIO: leave it out, or install "
+      "{view}: this program was built without OpenColorIO: leave it out, or install "
       "libopencolorio-dev and build again");
 }
 

@@ -75,8 +75,8 @@ std::optional<FileInputs> ReadInputs(const fs::path& file) {
 
 Error CannotResume(const fs::path& file, std::string_view why) {
   return UsageError(
-      fmt::format("{}: exists already, but {}, so that --resume cannot continue; give another "
-                  "name, or --overwrite instead of --resume",
+      fmt::format("{}: exists already, but {}, so that {{resume}} cannot continue; give another "
+                  "name, or {{overwrite}} instead of {{resume}}",
                   file.string(), why));
 }
 

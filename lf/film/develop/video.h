@@ -21,7 +21,7 @@ bool IsVideoName(const std::filesystem::path& path);
 // it has the name of a video. kOutput unless its folder exists, and the file is absent, empty or an
 // mp4 video.
 Result<void> CheckVideoTarget(const std::filesystem::path& path,
-                              std::string_view option = "--video");
+                              std::string_view option = "{video}");
 
 // Writes an mp4 (H.264, yuv420p, sRGB tagged as BT.709) of 8-bit sRGB pictures, frame by frame. An
 // odd width or height is cropped by one pixel, because yuv420p needs even ones. The file appears

@@ -91,7 +91,7 @@ class FilmWriter {
 
 Error Interrupted() {
   return {ErrorKind::kInterrupted,
-          "interrupted; the files that are complete stay, and --resume writes the others"};
+          "interrupted; the files that are complete stay, and {resume} writes the others"};
 }
 
 // Checks what does not depend on the headers of the frames.
@@ -100,19 +100,20 @@ Result<void> FilmWriter::CheckOutput() const {
   const fs::path of_frames = moments_[0].files[0].extension();
   if (!is_video() && !is_developed() && out.extension() != of_frames)
     return UsageError(
-        fmt::format("-o {}: its extension is \"{}\": expected \"{}\" as the frames have, "
+        fmt::format("{{output {}}}: its extension is \"{}\": expected \"{}\" as the frames have, "
                     "{}\".mp4\" for a video",
                     out.string(), out.extension().string(), of_frames.string(),
                     of_frames == ".exr" ? "\".png\" for pictures in sRGB, or " : "or "));
   if (options_.fps && !is_video())
-    return UsageError(fmt::format(
-        "--fps is for videos, but {} is a picture: leave it out, or give a name that ends in .mp4",
-        out.string()));
+    return UsageError(
+        fmt::format("{{fps}} is for videos, but {} is a picture: leave it out, or give a name that "
+                    "ends in .mp4",
+                    out.string()));
   const fs::path folder = out.has_parent_path() ? out.parent_path() : ".";
   std::error_code error;
   if (!fs::is_directory(folder, error))
     return OutputError(
-        fmt::format("-o {}: the folder {} does not exist: make it, or give another name",
+        fmt::format("{{output {}}}: the folder {} does not exist: make it, or give another name",
                     out.string(), folder.string()));
   if (is_video()) return CheckVideoTool();
   return {};
@@ -151,13 +152,14 @@ Result<void> FilmWriter::CheckTargets() const {
 Result<void> FilmWriter::CheckTarget(Target* target) const {
   std::error_code error;
   if (!fs::exists(target->file, error)) return {};
-  if (is_video()) LF_RETURN_IF_ERROR(CheckVideoTarget(target->file, "-o"));
+  if (is_video()) LF_RETURN_IF_ERROR(CheckVideoTarget(target->file, "{output}"));
   if (options_.overwrite) return {};
   if (!options_.resume)
-    return UsageError(fmt::format(
-        "{}: exists already: give another name, keep what exists with --resume, or replace it with "
-        "--overwrite",
-        target->file.string()));
+    return UsageError(
+        fmt::format("{}: exists already: give another name, keep what exists with {{resume}}, or "
+                    "replace it with "
+                    "{{overwrite}}",
+                    target->file.string()));
   LF_ASSIGN_OR_RETURN(target->is_kept, IsMadeOfThese(*target));
   return {};
 }
@@ -237,8 +239,8 @@ Result<void> FilmWriter::ChooseRate() {
   report_.fps = options_.fps ? options_.fps : header_.colours.frames_per_second;
   if (report_.fps) return {};
   report_.fps = kDefaultFps;
-  LogWarning("{}: states no frames per second ({} are used: --fps)", moments_[0].files[0].string(),
-             kDefaultFps);
+  LogWarning("{}: states no frames per second ({} are used: {{fps}})",
+             moments_[0].files[0].string(), kDefaultFps);
   return {};
 }
 

@@ -263,7 +263,7 @@ TEST_F(ViewFilmTest, OutputsThatFitNothingAreRefused) {
   ExpectWords(ErrorOf({ViewLayout::kAnaglyph, {}, folder_ / "s.mp4"}, ErrorKind::kInput),
               {"has alpha", "anaglyph"});
   ExpectWords(ErrorOf({ViewLayout::kSideBySide, {}, folder_ / "s.png", 25}, ErrorKind::kUsage),
-              {"--fps is for videos"});
+              {"{fps} is for videos"});
   ExpectWords(
       ErrorOf({ViewLayout::kQuilt, {2, 1}, folder_ / "s_qs1x2a0.75.png"}, ErrorKind::kUsage),
       {"_qs1x2a0.75", "_qs2x1a1.25"});
@@ -282,7 +282,7 @@ TEST_F(ViewFilmTest, WhatExistsIsKeptOrReplacedOnDemandOnly) {
   WriteFrames<uint8_t>(1, 4);
   ViewFilmOptions options = {ViewLayout::kSideBySide, {}, folder_ / "s.png"};
   ASSERT_TRUE(Write(options));
-  ExpectWords(ErrorOf(options, ErrorKind::kUsage), {"s_0001.png: exists", "--overwrite"});
+  ExpectWords(ErrorOf(options, ErrorKind::kUsage), {"s_0001.png: exists", "{overwrite}"});
   const std::string whole = ReadFile(folder_ / "s_0001.png").value();
   fs::remove(folder_ / "s_0002.png");
   options.resume = true;
@@ -297,7 +297,7 @@ TEST_F(ViewFilmTest, WhatExistsIsKeptOrReplacedOnDemandOnly) {
   EXPECT_EQ(ReadFile(folder_ / "s_0001.png").value(), whole);
   ASSERT_TRUE(WriteFileAtomically(folder_ / "s_0001.png", "other"));
   ExpectWords(ErrorOf(options, ErrorKind::kUsage),
-              {"s_0001.png: exists already", "does not tell", "--overwrite"});
+              {"s_0001.png: exists already", "does not tell", "{overwrite}"});
   options.resume = false;
   options.overwrite = true;
   ASSERT_TRUE(Write(options));
@@ -315,7 +315,7 @@ TEST_F(ViewFilmTest, FilesOfOtherFramesOrLayoutsAreNotKept) {
     EXPECT_EQ(same->kept_count, same->files.size());
     ViewFilmOptions resumed = other;
     resumed.resume = true;
-    ExpectWords(ErrorOf(resumed, ErrorKind::kUsage), {"exists already", word, "--overwrite"});
+    ExpectWords(ErrorOf(resumed, ErrorKind::kUsage), {"exists already", word, "{overwrite}"});
   };
   for (const char* const name : {"s.png", "s.mp4"}) {
     const ViewFilmOptions one = {ViewLayout::kAnaglyph, {}, folder_ / name};

@@ -158,8 +158,8 @@ Result<void> CheckViews(const ViewMoment& moment, std::span<const StatedCamera> 
     if (!is_beside(cameras[i - 1], cameras[i]))
       return InputError(fmt::format(
           "{}: its camera is not the right neighbour of the camera of {}, but they would be views "
-          "{} and {} of the {} of moment {}: give the frames of a path that lfpath --quilt or "
-          "--stereo made, and the number of views that it was given",
+          "{} and {} of the {} of moment {}: give the frames of a path that {{lfpath quilt}} or "
+          "{{stereo}} made, and the number of views that it was given",
           moment.files[i].string(), moment.files[i - 1].string(), i, i + 1, cameras.size(),
           moment.number));
   if (next != nullptr && is_beside(cameras.back(), *next))

@@ -88,11 +88,12 @@ Result<fs::path> PathOfViews(const fs::path& out, const ViewFileName& name) {
                               AspectText(name.width, name.height));
     const std::string given = DescriptionIn(stem);
     if (!given.empty() && given != description)
-      return UsageError(fmt::format(
-          "-o {}: its name describes another quilt (\"{}\") than that of {} x {} views of {} x {} "
-          "pixels (\"{}\"): leave the description out, it is added to the name",
-          out.string(), given, name.grid.columns, name.grid.rows, name.width, name.height,
-          description));
+      return UsageError(
+          fmt::format("{{output {}}}: its name describes another quilt (\"{}\") than that of {} x "
+                      "{} views of {} x {} "
+                      "pixels (\"{}\"): leave the description out, it is added to the name",
+                      out.string(), given, name.grid.columns, name.grid.rows, name.width,
+                      name.height, description));
     stem.resize(stem.size() - given.size());
   }
   if (name.layout == ViewLayout::kLeftRight) stem += name.eye == 0 ? "_left" : "_right";

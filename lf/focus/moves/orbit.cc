@@ -134,8 +134,8 @@ CameraMove MakeOrbit(const LightField& light_field, const Shot& shot) {
   if (orbit.unseen > kMostUnseen)
     move.warning = fmt::format(
         "even in this orbit LF cameras have not recorded {:.0f} % of a frame, which will be "
-        "black: begin at an LF camera that has neighbours on all sides (--camera), or let the "
-        "camera stand (--move focus-pull)",
+        "black: begin at an LF camera that has neighbours on all sides ({{camera}}), or let the "
+        "camera stand ({{move focus-pull}})",
         100 * orbit.unseen);
   return move;
 }

@@ -181,7 +181,7 @@ Result<fs::path> FindImages(const fs::path& model_folder, std::span<const std::s
   }
   return InputError(fmt::format(
       "{}: its image {} is not found: looked for it in {}{}; put the images there, or give their "
-      "folder (--images)",
+      "folder ({{images}})",
       model_folder.string(), names.front(), tried, NearbyIn(model_folder, names.front())));
 }
 

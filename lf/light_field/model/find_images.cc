@@ -329,7 +329,7 @@ Result<size_t> FindImageFiles(const std::optional<fs::path>& images_folder,
   if (ambiguous_count > 0)
     return InputError(
         fmt::format("{}: contains several files of the same name for {} of {} LF images, such as "
-                    "{}: give the folder of the right files (--images)",
+                    "{}: give the folder of the right files ({{images}})",
                     folder.string(), ambiguous_count, light_field->size(), example));
   if (found_count == 0) return 0;
   // A mask must not match a file with the same name in another folder, such as a photograph.
@@ -351,10 +351,10 @@ Result<ImageScale> ParseImageScale(const std::string& text) {
   if (text == "off") return ImageScale{ImageScale::Kind::kOff};
   const std::optional<double> factor = ParseNumber(text);
   if (!factor || !(*factor > 0 && *factor <= 100))
-    return UsageError(
-        fmt::format("--image-scale {}: expected auto, off, or a factor above 0 and up to 100, such "
-                    "as 0.25 (the size of the image files divided by the calibrated size)",
-                    text));
+    return UsageError(fmt::format(
+        "{{image_scale {}}}: expected auto, off, or a factor above 0 and up to 100, such "
+        "as 0.25 (the size of the image files divided by the calibrated size)",
+        text));
   return ImageScale{ImageScale::Kind::kFactor, *factor};
 }
 
@@ -368,11 +368,11 @@ Result<double> FitToImageFiles(const ImageScale& scale, LightField* light_field)
   for (const SizedImage& image : sizes) {
     const Intrinsics& k = IntrinsicsOf(*light_field, image.id);
     if (!IsScaled(k, image.size, divisor))
-      return InputError(
-          fmt::format("--image-scale {}: {} has {} x {} pixels, which is not this factor times the "
-                      "calibrated {} x {}: give another factor, or auto",
-                      scale.factor, light_field->ImagePath(image.id).string(), image.size[0],
-                      image.size[1], k.width_px, k.height_px));
+      return InputError(fmt::format(
+          "{{image_scale {}}}: {} has {} x {} pixels, which is not this factor times the "
+          "calibrated {} x {}: give another factor, or auto",
+          scale.factor, light_field->ImagePath(image.id).string(), image.size[0], image.size[1],
+          k.width_px, k.height_px));
     size_of[{k.width_px, k.height_px}] = image.size;
   }
   const auto rounded = [divisor](int full) {

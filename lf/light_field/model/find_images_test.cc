@@ -122,7 +122,7 @@ TEST_F(FindImagesTest, TwoThatFitAlikeAreAnError) {
   const auto found = FindImageFiles({}, &field);
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().kind, ErrorKind::kInput);
-  for (const char* word : {"a/1.png", "b/1.png", "--images", "1 of 1"})
+  for (const char* word : {"a/1.png", "b/1.png", "{images}", "1 of 1"})
     EXPECT_NE(found.error().message.find(word), std::string::npos) << found.error().message;
 }
 

@@ -97,21 +97,21 @@ std::vector<RigidTransform> HemispherePoses(const RigOptions& options) {
 
 Result<void> CheckOptions(const RigOptions& options) {
   if (options.count == 0)
-    return UsageError("a rig of 0 cameras takes no picture; give 1 or more (--count)");
+    return UsageError("a rig of 0 cameras takes no picture; give 1 or more ({count})");
   constexpr double kLongest_w = 1e6;  // calibrations hold the positions of all rigs up to here
   const bool pitched = options.shape != RigShape::kHemisphere;
   if (pitched && !(options.spacing_w > 0 && options.spacing_w <= kLongest_w))
     return UsageError(fmt::format(
-        "camera spacing {} (--spacing): expected a positive length of at most {} world units",
+        "camera spacing {} ({{spacing}}): expected a positive length of at most {} world units",
         options.spacing_w, kLongest_w));
   if (!(options.distance_w > 0 && options.distance_w <= kLongest_w))
     return UsageError(
-        fmt::format("distance {} of the cameras from the scene (--distance): expected a positive "
+        fmt::format("distance {} of the cameras from the scene ({{distance}}): expected a positive "
                     "length of at most {} world units",
                     options.distance_w, kLongest_w));
   if (!(options.jitter >= 0 && options.jitter <= 1))
     return UsageError(
-        fmt::format("jitter {} (--jitter): expected a share of the camera spacing from 0 to 1",
+        fmt::format("jitter {} ({{jitter}}): expected a share of the camera spacing from 0 to 1",
                     options.jitter));
   if (!LookAlong(Vec3::Zero(), options.view_world, options.up_world))
     return UsageError(fmt::format(
@@ -123,7 +123,7 @@ Result<void> CheckOptions(const RigOptions& options) {
   if (options.shape == RigShape::kBand && arc_rad > 2 * kPi)
     return UsageError(fmt::format(
         "a band of {} columns of cameras {} world units apart is longer than its circle of radius "
-        "{} world units: lower --count or --spacing, or raise --distance",
+        "{} world units: lower {{count}} or {{spacing}}, or raise {{distance}}",
         GridOf(options).columns, options.spacing_w, options.distance_w));
   return {};
 }

@@ -26,7 +26,7 @@ Result<RigOptions> RigOf(const SyntheticFieldOptions& a, const BuiltInScene& sce
   if (a.capture == "hemisphere") rig.shape = RigShape::kHemisphere;
   if (rig.shape == RigShape::kHemisphere && a.spacing)
     return UsageError(
-        "--spacing cannot be used with --capture hemisphere, where --count and --distance "
+        "{spacing} cannot be used with {capture hemisphere}, where {count} and {distance} "
         "determine it: leave it out");
   if (a.count > 0) rig.count = a.count;
   rig.spacing_w = a.spacing.value_or(rig.spacing_w);
@@ -52,17 +52,17 @@ Distortion DistortionOf(const SyntheticFieldOptions& a) {
 Result<LfImageFormat> FormatOf(const SyntheticFieldOptions& a) {
   if (a.bayer && a.format != "exr")
     return UsageError(
-        "--bayer and --format cannot be combined, because mosaics are always 16-bit PNG: leave one "
+        "{bayer} and {format} cannot be combined, because mosaics are always 16-bit PNG: leave one "
         "out");
   if (a.alpha != "none" && a.bayer)
     return UsageError(
-        "--bayer and --alpha cannot be combined, because mosaics have no alpha: leave one out");
+        "{bayer} and {alpha} cannot be combined, because mosaics have no alpha: leave one out");
   if (a.alpha != "none" && a.scene == "lights")
     return UsageError(
-        "--alpha cannot be used with the scene lights, which has no surfaces: use another scene, "
-        "or leave --alpha out");
+        "{alpha} cannot be used with the scene lights, which has no surfaces: use another scene, "
+        "or leave {alpha} out");
   if (a.noise > 0 && !a.bayer)
-    return UsageError("--noise can only be used with mosaics: add --bayer, or leave --noise out");
+    return UsageError("{noise} can only be used with mosaics: add {bayer}, or leave {noise} out");
   if (a.bayer) return LfImageFormat::kBayer;
   if (a.format == "png") return LfImageFormat::kPng;
   return a.format == "png16" ? LfImageFormat::kPng16 : LfImageFormat::kExr;
@@ -82,11 +82,11 @@ Result<void> CheckMayReplace(const SyntheticFieldOptions& a) {
   return UsageError(
       is_native
           ? fmt::format("{}: exists already: give another folder, or replace this light field with "
-                        "--overwrite",
+                        "{{overwrite}}",
                         CalibrationIn(a).string())
           : fmt::format("{}: holds a light field that lfsynth did not write, and that a "
                         "transforms.json would hide: give another folder, or write beside it with "
-                        "--overwrite",
+                        "{{overwrite}}",
                         a.output));
 }
 

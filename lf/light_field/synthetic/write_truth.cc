@@ -55,12 +55,11 @@ Result<void> WriteTruth(const Scene& scene, std::span<const RenderCamera> camera
     channels.push_back({"Z", depths.view(), 0, false});
     LF_RETURN_IF_ERROR(WriteExr(TruthPath(folder, i + 1), channels));
     if (keep_going && !keep_going(i + 1) && i + 1 < count)
-      return Error{
-          ErrorKind::kInterrupted,
-          fmt::format(
-              "{}: stopped after {} of {} frames; run the command again with --overwrite to start "
-              "anew",
-              folder.string(), i + 1, count)};
+      return Error{ErrorKind::kInterrupted,
+                   fmt::format("{}: stopped after {} of {} frames; run the command again with "
+                               "{{overwrite}} to start "
+                               "anew",
+                               folder.string(), i + 1, count)};
   }
   return {};
 }

@@ -139,12 +139,13 @@ Result<void> Decode(Transform transform, const Contents& contents, const PixelRe
 
 Result<void> CheckSettings(const CodecSettings& settings) {
   if (settings.levels < 1 || settings.levels > kMostLevels)
-    return UsageError(fmt::format("--levels {}: expected 1 to {}", settings.levels, kMostLevels));
+    return UsageError(fmt::format("{{levels {}}}: expected 1 to {}", settings.levels, kMostLevels));
   if (!(settings.threshold >= 0 && settings.threshold <= 65535))
-    return UsageError(fmt::format("--threshold {}: expected 0 to 65535", settings.threshold));
+    return UsageError(fmt::format("{{threshold {}}}: expected 0 to 65535", settings.threshold));
   if (settings.quantizer < 2 || settings.quantizer > 65536)
-    return UsageError(fmt::format(
-        "--quantizer {}: expected 8bit, or 2 to 65536 values per coefficient", settings.quantizer));
+    return UsageError(
+        fmt::format("{{quantizer {}}}: expected 8bit, or 2 to 65536 values per coefficient",
+                    settings.quantizer));
   return {};
 }
 

@@ -311,10 +311,10 @@ TEST(LfImageCodec, SettingsOutOfRangeAreUsageErrors) {
     return checked ? std::string("fine") : checked.error().message;
   };
   EXPECT_EQ(message({}), "fine");
-  EXPECT_EQ(message({CodecProfile::kDefault, 6, 3, 256}), "--levels 6: expected 1 to 5");
-  EXPECT_EQ(message({CodecProfile::kDefault, 3, -1, 256}), "--threshold -1: expected 0 to 65535");
+  EXPECT_EQ(message({CodecProfile::kDefault, 6, 3, 256}), "{levels 6}: expected 1 to 5");
+  EXPECT_EQ(message({CodecProfile::kDefault, 3, -1, 256}), "{threshold -1}: expected 0 to 65535");
   EXPECT_EQ(message({CodecProfile::kThesis, 1, 3, 1}),
-            "--quantizer 1: expected 8bit, or 2 to 65536 values per coefficient");
+            "{quantizer 1}: expected 8bit, or 2 to 65536 values per coefficient");
 }
 
 TEST(LfImageCodec, DamageIsAnErrorOrAnotherPicture) {

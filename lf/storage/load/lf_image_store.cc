@@ -20,7 +20,7 @@ auto WithoutThrowing(const std::string& name, const Load& load) -> decltype(load
     return load();
   } catch (const std::bad_alloc&) {
     return OutputError(fmt::format(
-        "{}: too little memory to load it: lower --memory, or use a machine with more", name));
+        "{}: too little memory to load it: lower {{memory}}, or use a machine with more", name));
   } catch (const std::exception& exception) {
     return Error{KindOfReadFailure(exception), fmt::format("{}: {}", name, exception.what())};
   }

@@ -218,7 +218,7 @@ Result<void> PackedStore::LoadRecorded(Loading* loading, LfImageId id, const Pix
   if (const auto info = ReadCodeInfo(bytes->mask); info && info->bits != mask_bits)
     return InputError(
         fmt::format("{}: alpha is stored in the packed store as {}, but needed as {}: compress the "
-                    "light field again with the --image-alpha of this run",
+                    "light field again with the {{image_alpha}} of this run",
                     name, is_light ? "a mask" : "opacity", is_light ? "opacity" : "a mask"));
   if (const auto ok = CheckCode(bytes->mask, mask_bits, PixelLayout::kGrey, false, code.rect); !ok)
     return named(ok.error());

@@ -170,10 +170,10 @@ Result<OpenedStore> OpenComplete(const fs::path& path) {
   LF_ASSIGN_OR_RETURN(Database database, OpenStoreDatabase(path));
   LF_ASSIGN_OR_RETURN(Settings settings, Settings::Read(database, kStoreFormat.name));
   if (settings.Text("state") == kUnfinished)
-    return database.Fault(fmt::format("is an unfinished packed store: finish it with {} --resume",
+    return database.Fault(fmt::format("is an unfinished packed store: finish it with {}",
                                       settings.Text(kDensifiedKey).empty()
-                                          ? "lfcompressor"
-                                          : "the program that densified it, and"));
+                                          ? "{lfcompressor resume}"
+                                          : "the program that densified it, and {resume}"));
   if (settings.Text("state") != kComplete) return settings.Wrong("state", "complete");
   return OpenedStore{std::move(database), std::move(settings)};
 }

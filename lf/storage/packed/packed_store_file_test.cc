@@ -267,7 +267,7 @@ TEST_F(PackedStoreFileTest, ItGoesOnWithTheSameOnly) {
             std::string::npos);
   plan = plan_;
   plan.shard_bytes = 7;
-  EXPECT_NE(difference(field_, plan).find("a --shard-size, in bytes, of 0, but now it is 7: "),
+  EXPECT_NE(difference(field_, plan).find("a {shard_size}, in bytes, of 0, but now it is 7: "),
             std::string::npos);
   LightField field = field_;
   field.image_names[3] = "b";

@@ -120,7 +120,7 @@ Result<void> PackedStoreWriter::State::TakeShardsBack() const {
     if (StoreOfShard(shard_path) != store)
       return InputError(
           fmt::format("{}: this shard of the unfinished store is missing: start the store again "
-                      "with lfcompressor --overwrite",
+                      "with {{lfcompressor overwrite}}",
                       UnfinishedPath(shard_path).string()));
     LF_RETURN_IF_ERROR(RenameFlushed(shard_path, UnfinishedPath(shard_path)));
   }
@@ -134,10 +134,10 @@ Result<void> PackedStoreWriter::State::CheckIsFree(const fs::path& shard_path) c
   if (!fs::exists(fs::symlink_status(shard_path, error))) return {};
   const std::string of = StoreOfShard(shard_path);
   if (!of.empty() && (of == store || of == replaced)) return {};
-  return UsageError(
-      fmt::format("{}: a shard of the new store would replace this file, which belongs to "
-                  "no store of this name: give the store another name (-o), or remove the file",
-                  shard_path.string()));
+  return UsageError(fmt::format(
+      "{}: a shard of the new store would replace this file, which belongs to "
+      "no store of this name: give the store another name ({{output}}), or remove the file",
+      shard_path.string()));
 }
 
 // Opens a shard for writing, and makes it if it does not exist.
@@ -145,7 +145,7 @@ Result<void> PackedStoreWriter::State::OpenShard(int number) {
   if (number > kMostShards)
     return OutputError(
         fmt::format("{}: the store needs more than {} shards, the largest number allowed: give a "
-                    "larger --shard-size",
+                    "larger {{shard_size}}",
                     path.string(), kMostShards));
   insert_blob.reset();
   shard.reset();
@@ -293,7 +293,7 @@ Result<PackedStoreWriter> PackedStoreWriter::Open(const fs::path& path,
   if (const auto difference = FirstDifference(settings, light_field, plan, false))
     return UsageError(
         fmt::format("{}: the unfinished store was begun with {}: give the options and files it was "
-                    "begun with, give another name, or start it again with --overwrite",
+                    "begun with, give another name, or start it again with {{overwrite}}",
                     path.string(), *difference));
   state->database = std::move(database);
   LF_RETURN_IF_ERROR(state->Read(settings));
@@ -318,8 +318,8 @@ Result<PackedStoreWriter> PackedStoreWriter::Create(const fs::path& path,
                                                     std::optional<FileLock> lock) {
   if (IsUnfinished(path))
     return UsageError(
-        fmt::format("{}: an unfinished store of this name exists: continue it with --resume, or "
-                    "start it again with --overwrite",
+        fmt::format("{}: an unfinished store of this name exists: continue it with {{resume}}, or "
+                    "start it again with {{overwrite}}",
                     UnfinishedPath(path).string()));
   return Open(path, light_field, plan, std::move(lock));
 }

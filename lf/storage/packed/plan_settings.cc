@@ -50,7 +50,7 @@ constexpr SettingWords kSettingWords[] = {
      false},
     {"images.whole_ids", "another part of the light field's LF images", false},
     {"images.rects", "other parts of the LF images' pixels", false},
-    {"shard_bytes", "a --shard-size, in bytes, of", true},
+    {"shard_bytes", "a {shard_size}, in bytes, of", true},
     {kDensifiedKey, "settings of the densifier of", true},
     {"response", "another response curve", false}};
 
@@ -60,7 +60,7 @@ std::string TextOfDifference(std::string key, const std::string& begun, const st
   for (const SettingWords& setting : kSettingWords) {
     if (setting.key != key) continue;
     if (!setting.shows_values) return std::string(setting.words);
-    key = setting.words;
+    return fmt::format("{} {}, but now it is {}", setting.words, shown(begun), shown(now));
   }
   std::replace(key.begin(), key.end(), '_', ' ');
   return fmt::format("{} {}, but now it is {}", key, shown(begun), shown(now));
