@@ -23,6 +23,7 @@ usage: check_house.py REPOSITORY CHECK
   programs places that have words for each program name all of them (program_list.py)
   comments comments begin and end as doc/style.md requires (comment_rules.py)
   version  VERSION, CHANGELOG.md, CITATION.cff and the add-on of Blender state one version (version_rules.py)
+  options  no message of the library names an option as a command line spells it (message_rules.py)
   messages subjects and bodies of commits are as doc/style.md requires (commit_rules.py); exits with 77 (skipped) if
            there is no history
 """
@@ -37,6 +38,7 @@ import folder_list
 import header_rules
 import include_rules
 import licence_headers
+import message_rules
 import mutant_list
 import program_list
 import table_rules
@@ -182,6 +184,10 @@ def check_programs(root, files):
     return program_list.missing(root)
 
 
+def check_options(root, files):
+    return message_rules.check_options(root, files)
+
+
 def check_version(root, files):
     return version_rules.faults_of(root)
 
@@ -193,7 +199,7 @@ def check_messages(root, files):
 CHECKS = {"includes": check_includes, "licences": check_licences, "programs": check_programs,
           "lengths": check_lengths, "paths": check_paths, "links": check_links, "pages": check_pages,
           "tables": check_tables, "mutants": check_mutants, "headers": check_headers, "comments": check_comments,
-          "version": check_version, "messages": check_messages}
+          "options": check_options, "version": check_version, "messages": check_messages}
 SKIPPED = 77
 
 

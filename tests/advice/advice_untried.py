@@ -42,6 +42,7 @@ UNTRIED = {
     "check_film_settings: composite the LF images over a background with --background, or ":
         "needs virtual LF images with opacity, which no program of ours writes",
     "packed_store_file: is an unfinished packed store": "needs an unfinished store that somebody has renamed",
+    "packed_store_file: lfcompressor --resume": "needs an unfinished store that somebody has renamed",
     "packed_store_writer: give a larger --shard-size": CAPTURE + "thousands of shards",
     "render_pass: make --r-st or --r-uv smaller": CAPTURE + "millions of rays in one cell",
     "display_view: this program was built without OpenColorIO": "depends on how the programs were built",

@@ -7,10 +7,11 @@ import program_list
 from message_rules import is_shipped, literals, spelled
 
 PROGRAMS = program_list.names(pathlib.Path(__file__).resolve().parents[2])
-# The texts of a program's help: options and their groups, and the summary, usage, examples and details of HelpTexts.
+# The texts of a program's help: options and their groups, the settings of lf/render/settings/, and the summary, usage,
+# examples and details of HelpTexts.
 HELP = re.compile(r"OptionGroup \w+\(app, \Z|"
                   r"(?:\bAdd|\bAddFlag|\bAddChoice|AddTo)\((?:[^;]|;(?=[^\n]*\"))*\Z|"
-                  r"\.(?:summary|usage|examples|details|strict|json|seed) =\s*\Z")
+                  r"\.(?:summary|usage|examples|details|strict|json|seed|text) =\s*\Z")
 OPTION = r"--[a-z][a-z-]*"
 # A remedy: a verb that tells what to do, and then an option, or "leave ... out" of a message that names an option.
 REMEDY = re.compile(

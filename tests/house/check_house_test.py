@@ -71,6 +71,20 @@ class PlantedFaults(unittest.TestCase):
         self.expect("check_house.py", "comments",
                     faults=["lf/core/a.h:2", "lf/core/a.h:4", "lf/core/a.h:7", "scripts/a.py:1", "scripts/a.py:2"])
 
+    def test_messages_of_the_library_name_options_by_their_keys(self):
+        self.plant("lf/core/a.cc", 'Error E() {\n  // --mode is an option.\n  return UsageError(\n'
+                                   '      "a.png: leave "\n      "out --mode");\n}\n'
+                                   'const char* const dashes = "a--b, ---";\n'
+                                   'const char* const key = "{mode rebin}";\n')
+        self.plant("lf/core/a_test.cc", 'EXPECT_EQ(Spelled("{mode}"), "--mode");\n')
+        self.plant("tools/a.cc", 'return UsageError("--mode");\n')
+        self.plant("lf/distribute/cluster/job.cc", 'Call({"--resume", "--engine=array"});\nSay("add --resume");\n')
+        self.plant("lf/distribute/cluster/slurm.cc", 'Write("#SBATCH --requeue");\n')
+        self.plant("lf/distribute/cluster/run_package.cc", 'Call({});\n')
+        self.expect("check_house.py", "options",
+                    faults=["lf/core/a.cc:4", "lf/distribute/cluster/job.cc:2",
+                            "lf/distribute/cluster/run_package.cc: has no option"])
+
     def test_the_licence_is_stated_once_in_the_first_lines(self):
         line = "SPDX-License-" "Identifier: Apache-2.0"
         first = "// Internal to the tests. Returns 1.\n"

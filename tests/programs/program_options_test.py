@@ -13,11 +13,14 @@ import sys
 import unittest
 
 import defaults
+import message_rules
 import small_field
+import source_messages
 from common_options import COMMON, OFFERED
 from program_test_case import ProgramTestCase
 
 BIN = None
+REPOSITORY = pathlib.Path(__file__).resolve().parent.parent
 
 VALUES = {"--threads": ["1"], "--seed": ["1"], "--progress": ["none"], "--allow-missing": ["1"]}
 # Calls whose only fault is that their files do not exist.
@@ -154,6 +157,26 @@ class ProgramOptionsTest(ProgramTestCase):
         result = self.call(name, *words)
         self.assertEqual(result.returncode, 2, (words, result.stderr))
         self.assertIn(option, result.stderr.splitlines()[-1])
+
+    def test_messages_refer_to_options_that_exist(self):
+        """Each key in a message of the sources is an option of a program; of the named program, if one is named."""
+        options = {}
+        for name in OFFERED:
+            description = json.loads(self.succeeds(name, "--describe"))
+            for group in description["groups"]:
+                for option in group["options"]:
+                    options.setdefault(name.split()[0], set()).update(option["names"])
+        everything = set().union(*options.values())
+        count = 0
+        for file in source_messages.sources(REPOSITORY):
+            if file.relative_to(REPOSITORY).as_posix() in message_rules.OTHER_LANGUAGES:
+                continue
+            for _, literal in message_rules.literals(file.read_text()):
+                for program, key in message_rules.references(literal):
+                    count += 1
+                    with self.subTest(file=str(file), program=program, key=key):
+                        self.assertIn(message_rules.option_of(key), options[program] if program else everything)
+        self.assertGreater(count, 300)
 
     def test_numbers_are_read_whole(self):
         """Every option that takes a number, of every program, refuses a text of which only a part is one."""
