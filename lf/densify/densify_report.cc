@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "lf/core/quantities.h"
-
 #include "lf/core/spelling.h"
 
 namespace lf {
@@ -35,8 +34,9 @@ std::string DensifyText(const DensifyReport& report, const DensifyOptions& optio
     text += fmt::format("skipped   {}: {}\n", skipped.name, Spelled(skipped.reason));
   if (report.was_there) return text + "existed already: nothing was written\n" + next;
   if (report.spacing_px > options.choices.spacing_px * 1.001)
-    text += fmt::format("note: {:.2g} px need more virtual LF images than --most allows\n",
-                        options.choices.spacing_px);
+    text +=
+        Spelled(fmt::format("note: {:.2g} px need more virtual LF images than {{most}} allows\n",
+                            options.choices.spacing_px));
   text += fmt::format(
       "agreement {:.1f} % of the pixels have depths on which two neighbours agree; {:.1f} % of "
       "the\n"

@@ -24,7 +24,7 @@ BIN = PACKAGE = None
 PAGELESS = False
 
 # Films that together state each setting of the table. A value is that of the Python argument; the words of the command
-# line follow from it. "hybrid" records rays in plates and has rebinned rays as well.
+# line follow from it. "hybrid" has plates, which record rays, and rebinned rays.
 FILMS = {
     "collect": {"filter": "bicubic", "lf_pixels": "points", "lens_weights": "hat", "fill": 7, "max_images": 9,
                 "max_angle_deg": 60, "order": "area", "seed": 5, "stop_when": "noise<=0.25", "back_end": "reference"},

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "lf/core/quantities.h"
-
 #include "lf/core/spelling.h"
 
 namespace lf {

@@ -102,21 +102,21 @@ Result<void> CheckLimits(const std::vector<ComparedPair>& compared, const Compar
   if (limits.min_psnr_db) {
     const ComparedPair& worst = WorstBy(compared, Badness);
     add(Broken(
-        compared, fmt::format("have a PSNR below --min-psnr {}", *limits.min_psnr_db).c_str(),
+        compared, fmt::format("have a PSNR below {{min_psnr {}}}", *limits.min_psnr_db).c_str(),
         [&](const PictureDifference& d) { return d.PsnrDb() < *limits.min_psnr_db; }, worst,
         worst.difference.PsnrDb()));
   }
   if (limits.min_ssim) {
     const ComparedPair& worst = WorstBySsim(compared);
     add(Broken(
-        compared, fmt::format("have an SSIM below --min-ssim {}", *limits.min_ssim).c_str(),
+        compared, fmt::format("have an SSIM below {{min_ssim {}}}", *limits.min_ssim).c_str(),
         [&](const PictureDifference& d) { return d.Ssim() < *limits.min_ssim; }, worst,
         worst.difference.Ssim()));
   }
   if (limits.max_flip) {
     const ComparedPair& worst = WorstByFlip(compared);
     add(Broken(
-        compared, fmt::format("have a FLIP above --max-flip {}", *limits.max_flip).c_str(),
+        compared, fmt::format("have a FLIP above {{max_flip {}}}", *limits.max_flip).c_str(),
         [&](const PictureDifference& d) { return d.Flip() > *limits.max_flip; }, worst,
         worst.difference.Flip()));
   }

@@ -28,7 +28,7 @@ Result<std::array<double, 3>> ParseBackground(const std::string& text) {
     const bool is_followed = c == 2 ? rest == end : rest != end && *rest == ',';
     if (error != std::errc() || !is_followed || !(rgb[c] >= 0 && rgb[c] <= 1e6))
       return UsageError(
-          fmt::format("--background {}: expected black, white, none, or R,G,B as three numbers "
+          fmt::format("{{background {}}}: expected black, white, none, or R,G,B as three numbers "
                       "from 0 to 1e6 in linear light, such as 0.2,0.2,0.3",
                       text));
     at = rest + 1;

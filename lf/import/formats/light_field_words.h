@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What people say of a light field besides its name: the options that all programs share, as texts.
+// The options of light fields that all programs share, as texts: what people say besides the name.
 #pragma once
 
 #include <string>

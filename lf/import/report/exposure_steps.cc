@@ -72,7 +72,7 @@ Result<std::optional<ExifGains>> StateBrackets(const ExposureSteps& steps, Threa
         "{} cannot be used with {}, because a packed store contains no Exif data, and its masks "
         "cannot be changed: give this option to lfimport for the image files, and compress them "
         "again",
-        steps.gain_from_exif ? "--gain-from-exif" : "--mask-clipped",
+        steps.gain_from_exif ? "{gain_from_exif}" : "{mask_clipped}",
         light_field->folder.string()));
   }
   const std::vector<StatedExposure> stated =
@@ -110,9 +110,9 @@ void WarnOfBrackets(const ExposureSteps& steps, const std::optional<ExifGains>& 
          "assumed to have the same; state lf_gain where the aperture was changed");
   if (ApplyBrackets(light_field) == 0 && steps.mask_clipped)
     warn("no-brackets",
-         "--mask-clipped masks nothing, because no image has a darker image of the same pose (by "
+         "{mask_clipped} masks nothing, because no image has a darker image of the same pose (by "
          "lf_gain). Give the images of one pose the same transform_matrix, and their gains "
-         "(--gain-from-exif, --match-exposure)");
+         "({gain_from_exif}, {match_exposure})");
 }
 
 Result<MatchedExposure> MatchAndApply(

@@ -18,7 +18,7 @@
 
 namespace lf {
 
-// What to do, each as the option of lfimport that is named.
+// The steps to take, each as the option of lfimport that is named.
 struct ExposureSteps {
   bool match = false;           // --match-exposure; not together with gain_from_exif
   bool vignetting = false;      // --vignetting, which needs `match`

@@ -218,7 +218,8 @@ std::string ReportText(const ImportReport& report) {
                         Brief(capture.depth_range->far_w)),
             &lines);
   AddLine("unit",
-          fmt::format("1 world unit counts as {} m; if it is not, see --scale", capture.unit_m),
+          Spelled(fmt::format("1 world unit counts as {} m; if it is not, see {{scale}}",
+                              capture.unit_m)),
           &lines);
   if (capture.alpha)
     AddLine("alpha", TextOfAlpha(*capture.alpha, capture.background, capture.keeps_opacity),
@@ -226,7 +227,7 @@ std::string ReportText(const ImportReport& report) {
   if (capture.density)
     AddDensity(*capture.density, &lines);
   else if (capture.spacing_w)
-    AddLine("density", "unknown: give the distance to the scene with --distance", &lines);
+    AddLine("density", Spelled("unknown: give the distance to the scene with {distance}"), &lines);
   if (capture.brackets) AddLine("brackets", BracketsText(*capture.brackets), &lines);
   if (report.exif_gains) AddLine("gains", ExifGainsText(*report.exif_gains), &lines);
   if (report.exposure) {
