@@ -38,20 +38,19 @@ FilmRenderer::FilmRenderer(const FilmSetup& setup, std::span<const FrameId> fram
   for (size_t f = 0; f < frames.size(); ++f) frames_[f].id = frames[f];
 }
 
-Result<void> FilmRenderer::Begin(const EarlierRun* earlier) {
-  if (earlier != nullptr)
-    for (Frame& frame : frames_) {
-      frame.is_released = earlier->IsFinished(frame.id);
-      frame.is_early = earlier->EndsEarly(frame.id);
-    }
+Result<void> FilmRenderer::Begin(const RunState* state, std::span<const FrameId> early) {
+  for (Frame& frame : frames_) {
+    frame.is_released = state != nullptr && state->finished().contains(frame.id);
+    frame.is_early = std::binary_search(early.begin(), early.end(), frame.id);
+  }
   LF_RETURN_IF_ERROR(FindLenses());
   if (film_.max_image_count)
     setup_.pool().ForEach(frames_.size(), [this](size_t f) {
       frames_[f].places = PlacesOfFirst(*film_.max_image_count, counted_index(),
                                         TakingInstants(frames_[f]), select_);
     });
-  if (film_.Rebins()) LF_RETURN_IF_ERROR(PrepareRebinning(earlier));
-  if (film_.HasPlates()) LF_RETURN_IF_ERROR(PreparePlates(earlier));
+  if (film_.Rebins()) LF_RETURN_IF_ERROR(PrepareRebinning(state));
+  if (film_.HasPlates()) LF_RETURN_IF_ERROR(PreparePlates(state));
   if (rebinned_ && film_.HasStopRule()) ForgetRaysAhead();
   SelectForFrames();
   if (setup_.work().IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
@@ -60,8 +59,12 @@ Result<void> FilmRenderer::Begin(const EarlierRun* earlier) {
   if (film_.HasStopRule()) LF_RETURN_IF_ERROR(PrepareStops(&collect));
   collector_ = std::make_unique<FrameCollector>(
       setup_.light_field(), setup_.store(), FramesOfCollector(), images_, collect, setup_.pool());
+  for (size_t i = 0; rebinned_ && i < rebinned_->section_count(); ++i)
+    saved_rays_places_.push_back(rebinned_->places_done(i));
   EndEarlyFrames();
   DecideStops();  // an earlier run may have ended exactly where the stop rule is applied
+  for (size_t f = 0; film_.HasPlates() && f < frames_.size(); ++f)
+    if (!IsReleased(f)) frames_[f].saved_places = Progress(f).places_done;
   return {};
 }
 
@@ -160,7 +163,7 @@ SensorPlate FilmRenderer::EmptyPlateOf(const Frame& frame) const {
           PlateKindOf(setup_.light_field().encoding, setup_.is_guarded())};
 }
 
-Result<void> FilmRenderer::PreparePlates(const EarlierRun* earlier) {
+Result<void> FilmRenderer::PreparePlates(const RunState* state) {
   // All threads make plates at the same time, because a thread that clears a plate mostly waits for
   // the memory.
   setup_.pool().ForEach(frames_.size(), [this](size_t f) {
@@ -174,7 +177,7 @@ Result<void> FilmRenderer::PreparePlates(const EarlierRun* earlier) {
       frame.places.begin = frame.places.end;
       continue;
     }
-    LF_ASSIGN_OR_RETURN(const FrameProgress start, LoadPlate(&frame, earlier));
+    LF_ASSIGN_OR_RETURN(const FrameProgress start, LoadPlate(&frame, state));
     if (frame.is_early) frame.is_early = LacksRays(f, start.places_done);
     if (frame.is_early) frame.places.end = std::min(frame.places.end, start.places_done);
     frame.places.begin = start.places_done;
@@ -201,14 +204,14 @@ bool FilmRenderer::LacksRays(size_t f, uint32_t places_done) const {
 
 // Loads a plate of the earlier run. If noise is measured and the plate has no moments, the plate is
 // dropped and its frame starts again, unless the frame is to be finished early.
-Result<FrameProgress> FilmRenderer::LoadPlate(Frame* frame, const EarlierRun* earlier) const {
+Result<FrameProgress> FilmRenderer::LoadPlate(Frame* frame, const RunState* state) const {
   SensorPlate& plate = frame->plate;
   const int width = plate.width(), height = plate.height();
   FrameProgress start;
   std::optional<NoiseMoments> moments;
-  if (earlier != nullptr) {
+  if (state != nullptr) {
     LF_ASSIGN_OR_RETURN(
-        start, earlier->LoadPlate(frame->id, &plate, film_.MeasuresNoise() ? &moments : nullptr));
+        start, state->LoadPlate(frame->id, &plate, film_.MeasuresNoise() ? &moments : nullptr));
   }
   if (!film_.MeasuresNoise()) return start;
   frame->has_noise = moments || start.places_done == 0;
@@ -240,7 +243,7 @@ Result<void> FilmRenderer::CheckReach(const LensGaps& gaps, FrameId frame) const
                   frame.value, reached_w, setup_.package().name, known_w));
 }
 
-Result<void> FilmRenderer::PrepareRebinning(const EarlierRun* earlier) {
+Result<void> FilmRenderer::PrepareRebinning(const RunState* state) {
   std::vector<RebinnedFrame> rebinned;
   for (const Frame& frame : frames_) {
     if (setup_.work().IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
@@ -259,10 +262,10 @@ Result<void> FilmRenderer::PrepareRebinning(const EarlierRun* earlier) {
   rebinned_ = std::make_unique<RebinnedRays>(setup_.index(), setup_.slabs(), std::move(rebinned),
                                              film_.Collects(), select_, options, setup_.pool());
   for (const std::string& line : rebinned_->Describe()) LogInfo("{}", line);
-  if (earlier == nullptr) return {};
-  for (size_t i = 0; i < rebinned_->section_count(); ++i) {
-    LF_ASSIGN_OR_RETURN(std::optional<EarlierRun::Rays> rays,
-                        earlier->LoadRays(i, rebinned_->max_cells_per_section()));
+  for (size_t i = 0; state != nullptr && i < rebinned_->section_count(); ++i) {
+    LF_ASSIGN_OR_RETURN(
+        std::optional<RunState::Rays> rays,
+        state->LoadRays(id(0), i, RaysFrames(), rebinned_->max_cells_per_section(), setup_.pool()));
     if (rays) rebinned_->Restore(i, std::move(rays->map), rays->places_done);
   }
   return {};
@@ -333,6 +336,12 @@ Result<bool> FilmRenderer::Step() {
   return step;
 }
 
+CollectProgress FilmRenderer::total() const {
+  CollectProgress total = {images_.size(), 0};
+  for (const SelectedImage& image : images_) total.tested_count += image.ray_count;
+  return total;
+}
+
 FrameProgress FilmRenderer::Progress(size_t f) const {
   if (!film_.HasPlates()) return {rebinned_->places_done(), {}};
   FrameProgress progress = collector_->frames()[f].progress;
@@ -398,11 +407,6 @@ void FilmRenderer::Release(size_t f) {
   frame.moments = NoiseMoments();
 }
 
-bool FilmRenderer::AreAllReleased() const {
-  return std::all_of(frames_.begin(), frames_.end(),
-                     [](const Frame& frame) { return frame.is_released; });
-}
-
 Result<void> FilmRenderer::CheckAnyContributes() const {
   const bool has_rays = std::any_of(frames_.begin(), frames_.end(), [](const Frame& frame) {
     return frame.earlier_rays.accepted_count > 0;
@@ -411,13 +415,6 @@ Result<void> FilmRenderer::CheckAnyContributes() const {
   std::vector<FrameId> ids;
   for (const Frame& frame : frames_) ids.push_back(frame.id);
   return NoneContributes(ids);
-}
-
-Result<void> FilmRenderer::CheckNotAllBroken() const {
-  if (!AllBroken() || skipped().empty()) return {};
-  return InputError(
-      fmt::format("every LF image that the frames need is missing or broken; the first: {}",
-                  skipped().front().reason));
 }
 
 bool FilmRenderer::AllBroken() const {

@@ -16,13 +16,13 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "lf/core/ids.h"
 #include "lf/core/result.h"
 #include "lf/film/develop/develop.h"
 #include "lf/film/plate/sensor_plate.h"
-#include "lf/rebinning/ray_map.h"
 #include "lf/render/collect/collect.h"
 #include "lf/render/collect/frame_lens.h"
 #include "lf/render/collect/noise_moments.h"
@@ -31,38 +31,14 @@
 #include "lf/render/hybrid/rebinned_rays.h"
 #include "lf/render/pipeline/develop_frame.h"
 #include "lf/render/pipeline/film_setup.h"
+#include "lf/render/pipeline/frame_source.h"
 #include "lf/render/state/plate_notes.h"
 #include "lf/render/state/report.h"
+#include "lf/render/state/run_state.h"
 
 namespace lf {
 
-// Gives access to the rays that an earlier run collected, from which a FilmRenderer continues.
-class EarlierRun {
- public:
-  virtual ~EarlierRun() = default;
-  // Returns true if the frame is finished, so that nothing is collected for it.
-  virtual bool IsFinished(FrameId frame) const = 0;
-  // Returns true if the frame is to be finished with the rays that the earlier run collected for
-  // it.
-  virtual bool EndsEarly(FrameId frame) const = 0;
-  // Adds the rays that the earlier run collected for the frame to the plate, and returns the
-  // frame's progress.
-  //   plate    empty, of the frame's size
-  //   moments  receives the noise moments of these rays, if the earlier run kept them; null: they
-  //            are not needed
-  virtual Result<FrameProgress> LoadPlate(FrameId frame, SensorPlate* plate,
-                                          std::optional<NoiseMoments>* moments) const = 0;
-  // The rebinned rays of a section (RebinnedRays::map()), made from the LF images at places before
-  // places_done. LoadRays() returns nullopt if the earlier run kept none; max_cells is
-  // RebinnedRays::max_cells_per_section().
-  struct Rays {
-    RayMap map;
-    uint32_t places_done = 0;
-  };
-  virtual Result<std::optional<Rays>> LoadRays(size_t section, size_t max_cells) const = 0;
-};
-
-class FilmRenderer {
+class FilmRenderer final : public FrameSource {
  public:
   // Makes a renderer of some frames of the package, ready for the first step. The pool must outlive
   // the renderer.
@@ -78,23 +54,20 @@ class FilmRenderer {
   //           rays are kept depends on all of these frames, even on finished ones.
   FilmRenderer(const FilmSetup& setup, std::span<const FrameId> frames);
 
-  // Selects the LF images that are still to be collected. Must be called once, before the functions
-  // below.
-  //   earlier  null: nothing was collected before; only used during the call
   // kInterrupted: WorkSettings::stop is set. kUsage: the package lacks LF cameras from whose LF
-  // images rebinned rays must be made. Other errors are those of `earlier`.
-  Result<void> Begin(const EarlierRun* earlier = nullptr);
+  // images rebinned rays must be made. Other errors are those of RunState::LoadPlate() and
+  // LoadRays().
+  Result<void> Begin(const RunState* state = nullptr, std::span<const FrameId> early = {}) override;
 
-  // Collects the next batch of LF images, and stops the frames whose stop rule is met. Returns
-  // false if no LF image was left. Errors are those of FrameCollector::Step(). After kInterrupted,
-  // the caller may call Step() again.
-  Result<bool> Step();
+  // Collects the next batch of LF images, and stops the frames whose stop rule is met. Errors are
+  // those of FrameCollector::Step().
+  Result<bool> Step() override;
 
-  size_t frame_count() const { return frames_.size(); }
-  FrameId id(size_t f) const { return frames_[f].id; }
+  size_t frame_count() const override { return frames_.size(); }
+  FrameId id(size_t f) const override { return frames_[f].id; }
   // Returns the frame's progress. It counts all rays in the plate, including those of the earlier
   // run.
-  FrameProgress Progress(size_t f) const;
+  FrameProgress Progress(size_t f) const override;
   // Must be called only if FilmSettings::HasPlates() is true.
   const SensorPlate& plate(size_t f) const { return frames_[f].plate; }
   // Returns the noise moments of the plate; null if noise is not measured, or if the moments lack
@@ -110,55 +83,51 @@ class FilmRenderer {
     return frames_[f].all_lens ? &*frames_[f].all_lens : nullptr;
   }
 
-  // True if the frame is to be finished with the rays of the earlier run, although it lacks others.
-  bool EndsEarly(size_t f) const { return frames_[f].is_early; }
-  // Returns the indices of the frames that the stop rule has stopped and that are not released yet.
-  std::vector<size_t> StoppedFrames() const;
+  bool EndsEarly(size_t f) const override { return frames_[f].is_early; }
+  // The frames that the stop rule has stopped.
+  std::vector<size_t> StoppedFrames() const override;
   // Returns the end (exclusive) of the frame's places in the order: the place where its stop rule
   // stopped it, otherwise the end of the places that the frame takes. Does not depend on how the
   // work is divided into batches.
   uint32_t PlaceOfEnd(size_t f) const;
 
   // Interpolates a frame from rebinned rays. Returns nullopt if the mode has none.
-  std::optional<Completion> Complete(size_t f);
-  // Develops the rays that the frame has so far. FrameReport::samples and noise are not set,
-  // because Measure() sets them. Several threads may call the second form at the same time, for
-  // different frames.
-  //   completion  result of Complete() for this frame
-  // with_effective and is_interrupted are explained at DevelopFrame().
+  std::optional<Completion> Complete(size_t f) override;
+  // Develops the rays that the frame has so far.
   RenderedFrame Develop(size_t f);
   RenderedFrame Develop(size_t f, const std::optional<Completion>& completion, bool with_effective,
-                        const std::function<bool()>& is_interrupted) const;
+                        const std::function<bool()>& is_interrupted) const override;
   // Measures samples and noise if the options have a rule for them, stop_at_... or require_..., and
-  // adds them to the report; leaves out the noise if moments(f) is null. Several threads may call
-  // it at the same time, for different frames. kInterrupted: WorkSettings::stop is set.
-  Result<void> Measure(size_t f, FrameReport* report);
+  // adds them to the report; leaves out the noise if moments(f) is null. kInterrupted:
+  // WorkSettings::stop is set.
+  Result<void> Measure(size_t f, FrameReport* report) override;
   // Returns the facts that are needed to develop the frame's plate. The caller adds the skipped LF
   // images and the program's version.
-  PlateNotes NotesOf(size_t f) const;
+  PlateNotes NotesOf(size_t f) const override;
 
-  // Frees the plate of a frame. The frame then takes no more LF images.
-  void Release(size_t f);
-  bool IsReleased(size_t f) const { return frames_[f].is_released; }
-  bool AreAllReleased() const;
+  void Release(size_t f) override;
+  bool IsReleased(size_t f) const override { return frames_[f].is_released; }
+
+  // Saves the plates, then the rebinned rays.
+  bool CanSave() const override { return true; }
+  Result<void> Save(RunState* state) override;
+  void End(RunState* state) override;
+  Result<void> WritePlateOf(size_t f, const std::filesystem::path& path, const RunState& state,
+                            PlateNotes notes, std::span<const SkippedImage> skipped) const override;
 
   const FilmSetup& setup() const { return setup_; }
-  // The LF images that all steps together load.
-  const std::vector<SelectedImage>& images() const { return images_; }
-  // Progress of the steps so far.
-  CollectProgress progress() const { return done_; }
-  std::span<const SkippedImage> skipped() const { return collector_->skipped(); }
+  const std::vector<SelectedImage>& images() const override { return images_; }
+  CollectProgress progress() const override { return done_; }
+  CollectProgress total() const override;
+  std::span<const SkippedImage> skipped() const override { return collector_->skipped(); }
+  void AddTo(RenderReport* totals) const override;
   const CollectTimes& times() const { return collector_->times(); }
   // The rebinned rays of the frames; null if the mode has none.
   const RebinnedRays* rebinned() const { return rebinned_.get(); }
   // kInput: no LF image contributes to any frame, and no ray was collected before. This is so if no
   // recorded ray passes both a frame's lens and the region that the frame sees.
   Result<void> CheckAnyContributes() const;
-  // True if all LF images were broken (or there were none), and the earlier run collected no ray.
-  bool AllBroken() const;
-  // kInput: AllBroken() is true, and there was at least one LF image. The message says what is
-  // wrong with the first one.
-  Result<void> CheckNotAllBroken() const;
+  bool AllBroken() const override;
 
  private:
   struct Frame {
@@ -178,6 +147,7 @@ class FilmRenderer {
     bool is_stopped = false;  // true: stopped by its rule, with the LF images before next_decision
     bool has_noise = false;   // true if the moments include all LF images in the plate
     bool is_early = false;  // true: to be finished with the rays of the earlier run, as EndsEarly()
+    uint32_t saved_places = 0;  // FrameProgress::places_done of the plate in the state on the disk
     std::unique_ptr<ReachableElements> reachable;
   };
 
@@ -191,16 +161,19 @@ class FilmRenderer {
   const ImageIndex& counted_index() const {
     return setup_.is_guarded() ? setup_.index().recorded() : setup_.index();
   }
-  Result<void> PrepareRebinning(const EarlierRun* earlier);
+  Result<void> PrepareRebinning(const RunState* state);
   Result<void> CheckReach(const LensGaps& gaps, FrameId frame) const;
-  Result<void> PreparePlates(const EarlierRun* earlier);
-  Result<FrameProgress> LoadPlate(Frame* frame, const EarlierRun* earlier) const;
+  Result<void> PreparePlates(const RunState* state);
+  Result<FrameProgress> LoadPlate(Frame* frame, const RunState* state) const;
   bool LacksRays(size_t f, uint32_t places_done) const;
   void SelectForFrames();
   void AddRebinnedImages();
   CollectOptions OptionsOfCollector() const;
   std::vector<CollectedFrame> FramesOfCollector();
   void EndEarlyFrames();
+  Result<void> SavePlates(RunState* state, std::span<const size_t> frames);
+  Result<void> SaveRays(RunState* state);
+  std::string RaysFrames() const;
 
   const ReachableElements& ReachableOf(size_t f);
   Result<void> PrepareStops(CollectOptions* collect);
@@ -218,7 +191,8 @@ class FilmRenderer {
   std::vector<Frame> frames_;
   std::vector<SelectedImage> images_;
   std::unique_ptr<FrameCollector> collector_;
-  std::unique_ptr<RebinnedRays> rebinned_;  // the rebinned rays; null if the mode has none
+  std::unique_ptr<RebinnedRays> rebinned_;   // the rebinned rays; null if the mode has none
+  std::vector<uint32_t> saved_rays_places_;  // places_done of each section in the state on the disk
   CollectProgress done_;
 };
 

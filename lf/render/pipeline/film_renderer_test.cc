@@ -12,13 +12,17 @@
 #include "lf/pixels/files/image_file.h"
 #include "lf/pixels/files/test_folder.h"
 #include "lf/render/collect/test_noise_field.h"
+#include "lf/render/pipeline/frame_output.h"
 #include "lf/render/pipeline/render.h"
+#include "lf/render/state/run_state.h"
 
 namespace lf {
 namespace {
 
 using testing::kHeight;
 using testing::kWidth;
+
+const std::vector<FrameId> kThird = {FrameId{3}};
 
 // A grid of LF images of noise in a folder, and a film of three frames.
 class FilmRendererTest : public FolderTest {
@@ -53,6 +57,24 @@ class FilmRendererTest : public FolderTest {
       ASSERT_TRUE(step) << step.error().message;
       if (!*step) return;
     }
+  }
+  // Returns a state with what the renderer has collected, in which frame 1 is finished.
+  std::unique_ptr<RunState> StateOf(FilmRenderer& renderer) {
+    RunStateOptions options;
+    options.folder = folder_ / "state";
+    std::filesystem::remove_all(options.folder);
+    options.frames = renderer.setup().frames();
+    options.picture = {{"picture.format", "exr"}};
+    {
+      const auto state = RunState::Open(options, renderer.setup().path()).value();
+      const RenderedFrame frame = renderer.Develop(0);
+      EXPECT_TRUE(renderer.Save(state.get()));
+      EXPECT_TRUE(WritePicture(renderer.NotesOf(0), frame.picture, state->FinishedPath(FrameId{1}),
+                               options.format, {}, {}));
+      EXPECT_TRUE(state->SaveFinished(frame.report));
+    }
+    options.resume = true;
+    return RunState::Open(options, renderer.setup().path()).value();
   }
   // Returns the pixels of the frame's file, after a render into a folder.
   Image<float> OfFolder(FrameId frame) {
@@ -225,34 +247,13 @@ TEST_F(FilmRendererTest, AnInterruptedStepGoesOn) {
   EXPECT_EQ(renderer->Develop(2).picture.rgb.pixels(), whole->Develop(2).picture.rgb.pixels());
 }
 
-// An earlier run whose plates are those of another renderer after some steps.
-class PlatesOf : public EarlierRun {
- public:
-  explicit PlatesOf(const FilmRenderer& renderer) : renderer_(renderer) {}
-  bool IsFinished(FrameId frame) const override { return frame == FrameId{1}; }
-  bool EndsEarly(FrameId frame) const override { return frame == FrameId{3}; }
-  Result<FrameProgress> LoadPlate(FrameId frame, SensorPlate* plate,
-                                  std::optional<NoiseMoments>* /*moments*/) const override {
-    plate->Merge(renderer_.plate(frame.value - 1));  // not called with kRebin, which has no plates
-    return renderer_.Progress(frame.value - 1);
-  }
-  Result<std::optional<Rays>> LoadRays(size_t section, size_t /*max_cells*/) const override {
-    const RebinnedRays* const rebinned = renderer_.rebinned();
-    if (rebinned == nullptr) return std::optional<Rays>();
-    return std::optional<Rays>({rebinned->map(section), rebinned->places_done(section)});
-  }
-
- private:
-  const FilmRenderer& renderer_;
-};
-
 TEST_F(FilmRendererTest, GoesOnFromAnEarlierRun) {
   const auto begun = Open(), whole = Open();
   ASSERT_TRUE(begun->Step().value());
   Finish(*whole);
   FilmRenderer renderer(begun->setup(), begun->setup().frames());
-  const PlatesOf earlier(*begun);
-  ASSERT_TRUE(renderer.Begin(&earlier));
+  const auto earlier = StateOf(*begun);
+  ASSERT_TRUE(renderer.Begin(earlier.get(), kThird));
   EXPECT_TRUE(renderer.IsReleased(0));
   EXPECT_TRUE(renderer.EndsEarly(2));
   Finish(renderer);
@@ -270,8 +271,8 @@ TEST_F(FilmRendererTest, AFrameThatHasAllItsRaysIsNotCutShort) {
     const auto whole = Open();
     Finish(*whole);
     FilmRenderer renderer(whole->setup(), whole->setup().frames());
-    const PlatesOf earlier(*whole);
-    ASSERT_TRUE(renderer.Begin(&earlier));
+    const auto earlier = StateOf(*whole);
+    ASSERT_TRUE(renderer.Begin(earlier.get(), kThird));
     EXPECT_FALSE(renderer.EndsEarly(2));
     Finish(renderer);
     EXPECT_FALSE(renderer.NotesOf(2).places_done);

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -16,6 +15,7 @@
 #include "lf/core/log.h"
 #include "lf/film/develop/video.h"
 #include "lf/render/needs/frame_needs.h"
+#include "lf/render/pipeline/film_renderer.h"
 #include "lf/render/pipeline/film_setup.h"
 #include "lf/render/pipeline/frame_output.h"
 #include "lf/render/pipeline/render_pass.h"
@@ -288,36 +288,34 @@ Result<void> Renderer::RunPass(const PassContext& context, std::span<const Frame
   const auto finished_before = std::count_if(frames.begin(), frames.end(), [this](FrameId frame) {
     return state_->finished().contains(frame);
   });
-  RenderPass pass(context, frames, early);
+  RenderPass pass(context, std::make_unique<FilmRenderer>(*setup_, frames), early);
   LF_RETURN_IF_ERROR(pass.Prepare());
-  const std::vector<SelectedImage>& images = pass.renderer().images();
+  const std::vector<SelectedImage>& images = pass.source().images();
   if (images.empty() && IsWhole() && totals_.pass_count == 1 && !state_->HasPlates() &&
       state_->finished().empty())
     return NoneContributes(setup_->frames());
   // The estimate of the total work assumes that later passes are as long as this one.
   const size_t passes_left = (frames_left + frames.size() - 1) / frames.size();
-  const uint64_t rays = std::accumulate(
-      images.begin(), images.end(), uint64_t{0},
-      [](uint64_t sum, const SelectedImage& image) { return sum + image.ray_count; });
+  const CollectProgress total = pass.source().total();
   LogDebug("pass over {} LF images for {} frames, {} to {}: {} pixels to be tried", images.size(),
-           frames.size(), frames.front().value, frames.back().value, rays);
-  done_.image_total = done_.image_count + images.size() * passes_left;
-  done_.ray_total = done_.ray_count + rays * passes_left;
+           frames.size(), frames.front().value, frames.back().value, total.tested_count);
+  done_.image_total = done_.image_count + total.image_count * passes_left;
+  done_.ray_total = done_.ray_count + total.tested_count * passes_left;
   LF_RETURN_IF_ERROR(pass.Collect());
 
   // CheckNotAllBroken() of one pass would make the result depend on the number of passes, and
   // thereby on the memory. Its error is therefore returned only after the last pass, and only if
   // every LF image of every pass is broken.
-  all_broken_ = all_broken_ && pass.renderer().AllBroken();
+  all_broken_ = all_broken_ && pass.source().AllBroken();
   const bool is_last = frames_left == frames.size();
-  if (all_broken_ && is_last && !setup_->film().shard && !pass.renderer().skipped().empty() &&
+  if (all_broken_ && is_last && !setup_->film().shard && !pass.source().skipped().empty() &&
       !had_plates_ && state_->finished().empty()) {
     state_->RemoveAll();  // checkpoints may have written plates without a ray
-    return pass.renderer().CheckNotAllBroken();
+    return pass.source().CheckNotAllBroken();
   }
   LF_RETURN_IF_ERROR(pass.Finish());
-  done_.image_count += images.size();
-  done_.ray_count += rays;
+  done_.image_count += total.image_count;
+  done_.ray_count += total.tested_count;
   done_.frame_count += frames.size() - static_cast<size_t>(finished_before);
   Report({}, 0);
   return {};

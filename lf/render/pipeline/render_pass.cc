@@ -1,77 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lf/render/pipeline/render_pass.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <limits>
 #include <utility>
 
 #include "lf/core/log.h"
-#include "lf/light_field/model/value_hasher.h"
 #include "lf/render/pipeline/frame_output.h"
-#include "lf/render/pipeline/skipped_images.h"
 #include "lf/render/state/run_inputs.h"
 
 namespace lf {
-namespace {
-
-// Returns a text that identifies the frames of a pass, because its rebinned rays depend on them.
-std::string DescriptionOf(std::span<const FrameId> frames) {
-  ValueHasher numbers;
-  for (const FrameId frame : frames) numbers.Add(frame.value);
-  return fmt::format("{} from {} to {} ({})", frames.size(), frames.front().value,
-                     frames.back().value, numbers.Text());
-}
-
-}  // namespace
-
-RenderPass::RenderPass(const PassContext& context, std::span<const FrameId> frames,
+RenderPass::RenderPass(const PassContext& context, std::unique_ptr<FrameSource> source,
                        std::span<const FrameId> early)
     : context_(context),
       early_(early.begin(), early.end()),
-      rays_frames_(DescriptionOf(frames)),
-      renderer_(context.setup, frames),
-      saved_(frames.size()) {}
-
-bool RenderPass::IsFinished(FrameId frame) const {
-  return context_.state.finished().contains(frame);
-}
-
-bool RenderPass::EndsEarly(FrameId frame) const {
-  return std::binary_search(early_.begin(), early_.end(), frame);
-}
-
-Result<FrameProgress> RenderPass::LoadPlate(FrameId frame, SensorPlate* plate,
-                                            std::optional<NoiseMoments>* moments) const {
-  return context_.state.LoadPlate(frame, plate, moments);
-}
-
-Result<std::optional<EarlierRun::Rays>> RenderPass::LoadRays(size_t section,
-                                                             size_t max_cells) const {
-  LF_ASSIGN_OR_RETURN(std::optional<RunState::Rays> rays,
-                      context_.state.LoadRays(renderer_.id(0), section, rays_frames_, max_cells,
-                                              context_.setup.pool()));
-  std::optional<EarlierRun::Rays> restored;
-  if (rays) restored = EarlierRun::Rays{std::move(rays->map), rays->places_done};
-  return restored;
-}
+      source_(std::move(source)),
+      pictures_s_(source_->frame_count()) {}
 
 Result<void> RenderPass::Prepare() {
-  LF_RETURN_IF_ERROR(renderer_.Begin(this));
-  if (context_.setup.film().HasPlates())
-    for (size_t f = 0; f < saved_.size(); ++f)
-      if (!renderer_.IsReleased(f)) saved_[f].places = renderer_.Progress(f).places_done;
-  if (const RebinnedRays* rebinned = renderer_.rebinned())
-    for (size_t i = 0; i < rebinned->section_count(); ++i)
-      saved_rays_places_.push_back(rebinned->places_done(i));
+  LF_RETURN_IF_ERROR(source_->Begin(&context_.state, early_));
   const std::vector<LfCamera>& cameras = context_.setup.light_field().cameras;
   const auto virtual_count = static_cast<size_t>(std::count_if(
-      renderer_.images().begin(), renderer_.images().end(),
+      source_->images().begin(), source_->images().end(),
       [&](const SelectedImage& image) { return cameras[image.id.value].is_virtual; }));
   RenderReport& totals = context_.totals;
   totals.selected_image_count =
-      std::max(totals.selected_image_count, renderer_.images().size() - virtual_count);
+      std::max(totals.selected_image_count, source_->images().size() - virtual_count);
   totals.selected_virtual_count = std::max(totals.selected_virtual_count, virtual_count);
   return {};
 }
@@ -79,8 +33,8 @@ Result<void> RenderPass::Prepare() {
 Result<void> RenderPass::Collect() {
   LF_RETURN_IF_ERROR(FinishEarlyFrames());
   LF_RETURN_IF_ERROR(FinishStoppedFrames());
-  while (!renderer_.AreAllReleased()) {
-    const Result<bool> step = renderer_.Step();
+  while (!source_->AreAllReleased()) {
+    const Result<bool> step = source_->Step();
     if (!step && step.error().kind != ErrorKind::kInterrupted) {
       // After an error, the plates have all rays of the steps before, and can be saved.
       if (!Save(0)) return step.error();
@@ -88,7 +42,7 @@ Result<void> RenderPass::Collect() {
                    step.error().message + " (finished work is kept: {resume} continues)"};
     }
     LF_RETURN_IF_ERROR(FinishStoppedFrames());
-    context_.progress(renderer_.progress(), finished_count_);
+    context_.progress(source_->progress(), finished_count_);
     if (IsStopped()) return Interrupt();
     if (!step) context_.signals->attention = false;
     if (context_.signals != nullptr && context_.signals->save.exchange(false)) {
@@ -105,21 +59,22 @@ Result<void> RenderPass::Collect() {
 // has. If the state has all rays of a frame, the frame is finished as usual.
 Result<void> RenderPass::FinishEarlyFrames() {
   std::vector<size_t> early;
-  for (size_t f = 0; f < renderer_.frame_count(); ++f) {
-    if (renderer_.IsReleased(f) || !EndsEarly(renderer_.id(f))) continue;
-    if (renderer_.EndsEarly(f))
+  for (size_t f = 0; f < source_->frame_count(); ++f) {
+    if (source_->IsReleased(f) || !std::binary_search(early_.begin(), early_.end(), source_->id(f)))
+      continue;
+    if (source_->EndsEarly(f))
       early.push_back(f);
-    else if (renderer_.Progress(f).places_done == 0)
+    else if (source_->Progress(f).places_done == 0)
       LogWarning(
           "{{finish}}: frame {} has no rays yet, and is therefore rendered from all of its LF "
           "images",
-          renderer_.id(f).value);
+          source_->id(f).value);
   }
   return FinishFrames(early);
 }
 
 Result<void> RenderPass::FinishStoppedFrames() {
-  const std::vector<size_t> stopped = renderer_.StoppedFrames();
+  const std::vector<size_t> stopped = source_->StoppedFrames();
   if (stopped.empty()) return {};
   LF_RETURN_IF_ERROR(context_.state.SaveTotals(Totals()));
   return FinishFrames(stopped);
@@ -128,16 +83,10 @@ Result<void> RenderPass::FinishStoppedFrames() {
 Result<void> RenderPass::Finish() {
   LF_RETURN_IF_ERROR(context_.state.SaveTotals(Totals()));
   std::vector<size_t> left;
-  for (size_t f = 0; f < renderer_.frame_count(); ++f)
-    if (!renderer_.IsReleased(f)) left.push_back(f);
+  for (size_t f = 0; f < source_->frame_count(); ++f)
+    if (!source_->IsReleased(f)) left.push_back(f);
   LF_RETURN_IF_ERROR(FinishFrames(left));
-  if (renderer_.rebinned() != nullptr) {
-    if (renderer_.rebinned()->facts().is_too_coarse)
-      LogWarning(
-          "some cells of rebinned rays are so wide that they got more LF pixels than they can "
-          "hold, so that rays were lost: make {{r_st}} or {{r_uv}} smaller");
-    context_.state.RemoveRays();
-  }
+  source_->End(&context_.state);
   const double earlier_s = context_.totals.total_s;
   context_.totals = Totals();
   context_.totals.total_s = earlier_s;
@@ -160,13 +109,16 @@ Result<void> RenderPass::FinishFrames(std::span<const size_t> frames) {
 // kInterrupted: at least one of the frames is not written.
 Result<void> RenderPass::FinishAtOnce(std::span<const size_t> frames) {
   struct Finishing {
-    size_t f;
+    size_t f = 0;
     std::optional<Completion> completion;
-    Result<FrameReport> written;
+    Result<FrameReport> written = FrameReport();
   };
   if (IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
-  std::vector<Finishing> finishing;
-  for (const size_t f : frames) finishing.push_back({f, renderer_.Complete(f), FrameReport()});
+  std::vector<Finishing> finishing(frames.size());
+  for (size_t i = 0; i < frames.size(); ++i) {
+    finishing[i].f = frames[i];
+    finishing[i].completion = source_->Complete(frames[i]);
+  }
   context_.setup.pool().ForEach(finishing.size(), [&](size_t i) {
     finishing[i].written = WriteFiles(finishing[i].f, finishing[i].completion);
   });
@@ -182,7 +134,7 @@ Result<void> RenderPass::FinishAtOnce(std::span<const size_t> frames) {
 }
 
 PlateNotes RenderPass::NotesOf(size_t f) const {
-  PlateNotes notes = renderer_.NotesOf(f);
+  PlateNotes notes = source_->NotesOf(f);
   notes.version = context_.folder.version;
   return notes;
 }
@@ -190,46 +142,32 @@ PlateNotes RenderPass::NotesOf(size_t f) const {
 // Writes the files of a frame. Several threads may call this at the same time, for different
 // frames.
 Result<FrameReport> RenderPass::WriteFiles(size_t f, const std::optional<Completion>& completion) {
-  const FrameId id = renderer_.id(f);
+  const FrameId id = source_->id(f);
   const std::filesystem::path to = context_.state.FinishedPath(id);
   const bool is_shard = context_.setup.film().shard.has_value();
-  if (context_.folder.keep_plates || is_shard) LF_RETURN_IF_ERROR(WriteFinishedPlate(f, to));
+  if (context_.folder.keep_plates || is_shard) {
+    std::filesystem::path plate = to;
+    LF_RETURN_IF_ERROR(source_->WritePlateOf(f, plate.replace_extension(".plate"), context_.state,
+                                             NotesOf(f), Totals().skipped));
+  }
   if (is_shard) {
     FrameReport report;
     report.frame = id;
-    report.rays = renderer_.Progress(f).rays;
+    report.rays = source_->Progress(f).rays;
     report.camera = InputsOfFrame(context_.setup.path(), id);
     return report;
   }
   LF_ASSIGN_OR_RETURN(FrameReport report,
                       WritePicture(f, completion, to, [this] { return IsStopped(); }));
-  LF_RETURN_IF_ERROR(renderer_.Measure(f, &report));
+  LF_RETURN_IF_ERROR(source_->Measure(f, &report));
   return report;
-}
-
-Result<void> RenderPass::WriteFinishedPlate(size_t f, std::filesystem::path path) const {
-  const FilmSetup& setup = context_.setup;
-  FrameProgress progress = renderer_.Progress(f);
-  progress.places_done = renderer_.PlaceOfEnd(f);  // must not depend on the division into passes
-  PlateEntries text = context_.state.PlateText(renderer_.id(f), progress, renderer_.moments(f));
-  PlateNotes notes = NotesOf(f);
-  std::vector<const FrameLens*> lenses;
-  for (const FrameLens& lens : renderer_.lenses(f)) lenses.push_back(&lens);
-  if (const FrameLens* const all = renderer_.all_lens(f)) lenses.push_back(all);
-  notes.skipped = SkippedOf(
-      Totals().skipped, setup.index(),
-      {std::move(lenses), {0, progress.places_done}, setup.Select().reach, setup.film().shard});
-  notes.skipped_count = notes.skipped.size();
-  for (auto& entry : TextOf(notes)) text.push_back(std::move(entry));
-  if (setup.film().shard) text.emplace_back("shard", setup.film().shard->Text());
-  return WritePlate(path.replace_extension(".plate"), text, renderer_.plate(f), setup.pool());
 }
 
 Result<FrameReport> RenderPass::WritePicture(size_t f, const std::optional<Completion>& completion,
                                              const std::filesystem::path& to,
                                              const std::function<bool()>& is_interrupted) const {
   const FrameFormat format = context_.folder.format;
-  RenderedFrame frame = renderer_.Develop(f, completion, IsExr(format), is_interrupted);
+  RenderedFrame frame = source_->Develop(f, completion, IsExr(format), is_interrupted);
   LF_RETURN_IF_ERROR(lf::WritePicture(NotesOf(f), std::move(frame.picture), to, format,
                                       context_.folder.picture, is_interrupted));
   return frame.report;
@@ -269,12 +207,12 @@ Result<void> RenderPass::EndRecords() {
   if (!records_.valid()) return {};
   const Result<void> saved = records_.get();
   for (const auto& [f, report] : std::exchange(recording_, {})) {
-    if (!IsFinished(report.frame)) continue;
+    if (!context_.state.finished().contains(report.frame)) continue;
     LogDebug("frame {}: written, with {} rays of {} LF images", report.frame.value,
              report.rays.accepted_count, report.rays.image_count);
-    renderer_.Release(f);
+    source_->Release(f);
     ++finished_count_;
-    context_.progress(renderer_.progress(), finished_count_);
+    context_.progress(source_->progress(), finished_count_);
   }
   return saved;
 }
@@ -283,17 +221,8 @@ Result<void> RenderPass::EndRecords() {
 RenderReport RenderPass::Totals() const {
   RenderReport totals = context_.totals;
   totals.total_s += NowSeconds() - context_.begin_s;
-  totals.load_cpu_s += renderer_.times().load_cpu_s;
-  totals.load_wall_s += renderer_.times().load_wall_s;
-  totals.collect_cpu_s += renderer_.times().collect_cpu_s;
-  if (renderer_.rebinned() != nullptr) {
-    const RebinnedRays::Facts facts = renderer_.rebinned()->facts();
-    totals.AddRebinning({facts.section_count, facts.cell_count, facts.looked_at, facts.cpu_s,
-                         facts.is_full     ? "some"
-                         : facts.keeps_all ? "all"
-                                           : "edges"});
-  }
-  totals.AddSkipped(renderer_.skipped());
+  source_->AddTo(&totals);
+  totals.AddSkipped(source_->skipped());
   return totals;
 }
 

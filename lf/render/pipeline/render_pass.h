@@ -7,12 +7,13 @@
 #include <filesystem>
 #include <functional>
 #include <future>
+#include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
-#include "lf/render/pipeline/film_renderer.h"
+#include "lf/render/pipeline/film_setup.h"
+#include "lf/render/pipeline/frame_source.h"
 #include "lf/render/pipeline/render.h"
 #include "lf/render/state/dump_clock.h"
 #include "lf/render/state/run_state.h"
@@ -38,18 +39,18 @@ struct PassContext {
   std::function<void(const CollectProgress&, size_t finished_count)> progress;
 };
 
-class RenderPass : private EarlierRun {
+class RenderPass {
  public:
-  //   frames  frames of the pass, ascending. Finished frames are not rendered, but must be listed,
+  //   source  of the frames of the pass. Finished frames are not rendered, but are among them,
   //           because which rebinned rays are kept depends on all frames of the pass.
-  //   early   those of `frames` that are to be finished with the rays of the state alone, ascending
-  RenderPass(const PassContext& context, std::span<const FrameId> frames,
+  //   early   frames that are to be finished with the rays of the state alone, ascending
+  RenderPass(const PassContext& context, std::unique_ptr<FrameSource> source,
              std::span<const FrameId> early);
 
-  // Loads the plates of an earlier run, and selects the LF images that are still to be collected.
-  // kInput: the state is damaged. Other errors are those of FilmRenderer::Begin().
+  // Loads the rays of an earlier run, and selects the LF images that are still to be collected.
+  // kInput: the state is damaged. Other errors are those of FrameSource::Begin().
   Result<void> Prepare();
-  const FilmRenderer& renderer() const { return renderer_; }
+  const FrameSource& source() const { return *source_; }
 
   // Collects until all LF images are done or all frames are finished. kInterrupted: the state was
   // written.
@@ -58,22 +59,11 @@ class RenderPass : private EarlierRun {
   Result<void> Finish();
 
  private:
-  // How much of an unfinished frame is saved in the folder.
-  struct Saved {
-    uint32_t places = 0;   // FrameProgress::places_done when the frame was last saved
-    double picture_s = 0;  // NowSeconds() when its picture was last written
-  };
   // A frame whose file is written.
   struct Written {
     size_t f = 0;
     FrameReport report;
   };
-
-  bool IsFinished(FrameId frame) const override;
-  bool EndsEarly(FrameId frame) const override;
-  Result<FrameProgress> LoadPlate(FrameId frame, SensorPlate* plate,
-                                  std::optional<NoiseMoments>* moments) const override;
-  Result<std::optional<EarlierRun::Rays>> LoadRays(size_t section, size_t max_cells) const override;
 
   Result<void> FinishEarlyFrames();
   Result<void> FinishStoppedFrames();
@@ -81,7 +71,6 @@ class RenderPass : private EarlierRun {
   Result<void> FinishAtOnce(std::span<const size_t> frames);
   PlateNotes NotesOf(size_t f) const;
   Result<FrameReport> WriteFiles(size_t f, const std::optional<Completion>& completion);
-  Result<void> WriteFinishedPlate(size_t f, std::filesystem::path path) const;
   Result<FrameReport> WritePicture(size_t f, const std::optional<Completion>& completion,
                                    const std::filesystem::path& to,
                                    const std::function<bool()>& is_interrupted) const;
@@ -92,8 +81,6 @@ class RenderPass : private EarlierRun {
 
   Result<void> Save(double picture_budget_s);
   Result<void> SaveAllRays();
-  Result<void> SavePlates(std::span<const size_t> frames);
-  Result<void> SaveRays();
   Result<void> SavePictures(double picture_budget_s);
   Result<void> SaveWhenDue();
   Error Interrupt();
@@ -101,10 +88,8 @@ class RenderPass : private EarlierRun {
 
   const PassContext& context_;
   const std::vector<FrameId> early_;
-  const std::string rays_frames_;  // text in the files of rebinned rays that identifies the frames
-  FilmRenderer renderer_;
-  std::vector<Saved> saved_;                 // one for each frame of renderer_
-  std::vector<uint32_t> saved_rays_places_;  // places_done of each section in the state on the disk
+  const std::unique_ptr<FrameSource> source_;
+  std::vector<double> pictures_s_;  // NowSeconds() when the picture of each frame was last written
   size_t finished_count_ = 0;
   // Frames whose records are being written, and the thread that writes them. The thread is declared
   // last, so that it has ended before anything else is destroyed.

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parts of FilmRenderer that write the rays of frames into a state, and report them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <utility>
+
+#include "lf/core/log.h"
+#include "lf/light_field/model/value_hasher.h"
+#include "lf/render/pipeline/film_renderer.h"
+#include "lf/render/pipeline/skipped_images.h"
+
+namespace lf {
+namespace {
+
+// One plate is compressed while the disk takes the other. More would need more memory.
+constexpr size_t kPlatesAtOnce = 2;
+
+}  // namespace
+
+// Returns a text that identifies the frames of a pass, because its rebinned rays depend on them.
+std::string FilmRenderer::RaysFrames() const {
+  ValueHasher numbers;
+  for (const Frame& frame : frames_) numbers.Add(frame.id.value);
+  return fmt::format("{} from {} to {} ({})", frames_.size(), frames_.front().id.value,
+                     frames_.back().id.value, numbers.Text());
+}
+
+Result<void> FilmRenderer::Save(RunState* state) {
+  std::vector<size_t> changed;
+  for (size_t f = 0; f < frames_.size(); ++f)
+    if (!IsReleased(f) && Progress(f).places_done != frames_[f].saved_places) changed.push_back(f);
+  if (film_.HasPlates()) LF_RETURN_IF_ERROR(SavePlates(state, changed));
+  for (const size_t f : changed) frames_[f].saved_places = Progress(f).places_done;
+  return SaveRays(state);
+}
+
+Result<void> FilmRenderer::SavePlates(RunState* state, std::span<const size_t> frames) {
+  ThreadPool& pool = setup_.pool();
+  std::atomic<size_t> next = 0;
+  std::vector<Result<void>> saved(frames.size());
+  pool.ForEach(std::min(kPlatesAtOnce, frames.size()), [&](size_t) {
+    for (size_t i = next++; i < frames.size(); i = next++) {
+      const size_t f = frames[i];
+      saved[i] = state->SavePlate(id(f), Progress(f), plate(f), pool, moments(f));
+      if (!saved[i]) next = frames.size();
+    }
+  });
+  for (const Result<void>& one : saved) LF_RETURN_IF_ERROR(one);
+  return {};
+}
+
+Result<void> FilmRenderer::SaveRays(RunState* state) {
+  for (size_t i = 0; i < saved_rays_places_.size(); ++i) {
+    const uint32_t places_done = rebinned_->places_done(i);
+    if (places_done == saved_rays_places_[i]) continue;
+    LF_RETURN_IF_ERROR(
+        state->SaveRays(id(0), i, RaysFrames(), rebinned_->map(i), places_done, setup_.pool()));
+    saved_rays_places_[i] = places_done;
+  }
+  return {};
+}
+
+void FilmRenderer::End(RunState* state) {
+  if (!rebinned_) return;
+  if (rebinned_->facts().is_too_coarse)
+    LogWarning(
+        "some cells of rebinned rays are so wide that they got more LF pixels than they can "
+        "hold, so that rays were lost: make --r-st or --r-uv smaller");
+  state->RemoveRays();
+}
+
+void FilmRenderer::AddTo(RenderReport* totals) const {
+  totals->load_cpu_s += times().load_cpu_s;
+  totals->load_wall_s += times().load_wall_s;
+  totals->collect_cpu_s += times().collect_cpu_s;
+  if (!rebinned_) return;
+  const RebinnedRays::Facts facts = rebinned_->facts();
+  totals->AddRebinning({facts.section_count, facts.cell_count, facts.looked_at, facts.cpu_s,
+                        facts.is_full     ? "some"
+                        : facts.keeps_all ? "all"
+                                          : "edges"});
+}
+
+Result<void> FilmRenderer::WritePlateOf(size_t f, const std::filesystem::path& path,
+                                        const RunState& state, PlateNotes notes,
+                                        std::span<const SkippedImage> skipped) const {
+  FrameProgress progress = Progress(f);
+  progress.places_done = PlaceOfEnd(f);  // must not depend on the division into passes
+  PlateEntries text = state.PlateText(id(f), progress, moments(f));
+  std::vector<const FrameLens*> of_frame;
+  for (const FrameLens& lens : lenses(f)) of_frame.push_back(&lens);
+  if (const FrameLens* const all = all_lens(f)) of_frame.push_back(all);
+  notes.skipped = SkippedOf(
+      skipped, setup_.index(),
+      {std::move(of_frame), {0, progress.places_done}, setup_.Select().reach, film_.shard});
+  notes.skipped_count = notes.skipped.size();
+  for (auto& entry : TextOf(notes)) text.push_back(std::move(entry));
+  if (film_.shard) text.emplace_back("shard", film_.shard->Text());
+  return WritePlate(path, text, plate(f), setup_.pool());
+}
+
+}  // namespace lf

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// The seam between what makes frames and what keeps them. A FrameSource collects the frames of one
+// pass from LF images, batch by batch, and develops them; RenderPass (render_pass.h) owns the
+// folder: files, records, checkpoints and signals. FilmRenderer is the source of lfrenderer.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "lf/core/ids.h"
+#include "lf/core/result.h"
+#include "lf/film/develop/develop.h"
+#include "lf/render/collect/collect.h"
+#include "lf/render/pipeline/develop_frame.h"
+#include "lf/render/state/plate_notes.h"
+#include "lf/render/state/report.h"
+#include "lf/render/state/run_state.h"
+#include "lf/selection/select.h"
+
+namespace lf {
+
+// Frames are given by their index f, in the order of the frames of the pass.
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+
+  // Selects the LF images that are still to be collected. Must be called once, before the functions
+  // below.
+  //   state  the frames that it has as finished are released, and the work goes on from what Save()
+  //          wrote there; null: nothing was made before. Used only during the call
+  //   early  frames to be finished with what the state has of them, ascending
+  virtual Result<void> Begin(const RunState* state, std::span<const FrameId> early) = 0;
+  // Collects the next batch of LF images. Returns false if no LF image was left. After
+  // kInterrupted, the caller may call Step() again.
+  virtual Result<bool> Step() = 0;
+  // The LF images that all steps together read, by ascending places.
+  virtual const std::vector<SelectedImage>& images() const = 0;
+  // Progress of the steps so far, and after the last one.
+  virtual CollectProgress progress() const = 0;
+  virtual CollectProgress total() const = 0;
+  // Broken LF images that the steps left out.
+  virtual std::span<const SkippedImage> skipped() const = 0;
+  // True if all LF images were broken (or there were none), and nothing was collected before.
+  virtual bool AllBroken() const = 0;
+  // kInput: AllBroken() is true, and there was at least one LF image. The message says what is
+  // wrong with the first one.
+  Result<void> CheckNotAllBroken() const;
+  // Adds the times of the steps, and facts about what was collected, to the report.
+  virtual void AddTo(RenderReport* totals) const = 0;
+
+  virtual size_t frame_count() const = 0;
+  virtual FrameId id(size_t f) const = 0;
+  virtual FrameProgress Progress(size_t f) const = 0;
+  // True if the frame is to be finished with what the state has of it, although it lacks LF images.
+  virtual bool EndsEarly(size_t f) const = 0;
+  // Returns the frames that need no further LF image, and that are not released yet.
+  virtual std::vector<size_t> StoppedFrames() const = 0;
+  // Frees the memory of a frame, which takes no more LF images.
+  virtual void Release(size_t f) = 0;
+  virtual bool IsReleased(size_t f) const = 0;
+  bool AreAllReleased() const;
+
+  // Makes what several frames share of the developed picture of a frame; nullopt if there is none.
+  virtual std::optional<Completion> Complete(size_t f) = 0;
+  // Develops what was collected of the frame so far. FrameReport::samples and noise are not set,
+  // because Measure() sets them. Several threads may call these three functions at the same time,
+  // for different frames.
+  //   completion  result of Complete() for this frame
+  // with_effective and is_interrupted are explained at DevelopFrame().
+  virtual RenderedFrame Develop(size_t f, const std::optional<Completion>& completion,
+                                bool with_effective,
+                                const std::function<bool()>& is_interrupted) const = 0;
+  // Adds the measurements that the settings ask for to the report.
+  virtual Result<void> Measure(size_t f, FrameReport* report) = 0;
+  // Returns the facts about a frame that its files state. The caller adds the version.
+  virtual PlateNotes NotesOf(size_t f) const = 0;
+
+  // False if Save() does nothing: an interrupted pass then begins again with the frames that were
+  // not finished.
+  virtual bool CanSave() const = 0;
+  // Saves what was collected since the last call of frames that are not released, for Begin() of a
+  // later run.
+  virtual Result<void> Save(RunState* state) = 0;
+  // Ends a pass whose frames are all finished: removes from the state what they shared.
+  virtual void End(RunState* state) = 0;
+  // Writes the plate of a finished frame. Several threads may call it at the same time, for
+  // different frames.
+  //   notes    result of NotesOf(), with the version
+  //   skipped  LF images that the render has left out so far
+  // kUsage: the frames have no plates.
+  virtual Result<void> WritePlateOf(size_t f, const std::filesystem::path& path,
+                                    const RunState& state, PlateNotes notes,
+                                    std::span<const SkippedImage> skipped) const = 0;
+};
+
+}  // namespace lf
