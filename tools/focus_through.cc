@@ -36,6 +36,7 @@
 #include "lf/import/paths/open_path.h"
 #include "lf/render/pipeline/check_outputs.h"
 #include "lf/render/pipeline/frame_output.h"
+#include "lf/render/pipeline/render.h"
 #include "lf/render/state/other_films.h"
 #include "lf/render/state/record_fields.h"
 
@@ -225,7 +226,7 @@ Result<bool> HasFolder(const Arguments& a, const Given& given) {
 }
 
 Result<LensStatisticOptions> OptionsOf(const Arguments& a, const CommonOptions& common,
-                                       const std::atomic<bool>& interrupted, const Given& given) {
+                                       const Given& given) {
   LensStatisticOptions options;
   options.statistic = StatisticOf(a);
   if (given.trim && options.statistic != LensStatistic::kTrimmed)
@@ -246,7 +247,6 @@ Result<LensStatisticOptions> OptionsOf(const Arguments& a, const CommonOptions& 
   LF_ASSIGN_OR_RETURN(options.memory_bytes, ParseByteSize(a.memory, "--memory"));
   options.strict = common.strict;
   options.adds_opacity = a.picture.alpha;
-  options.stop = &interrupted;
   return options;
 }
 
@@ -405,30 +405,33 @@ Result<FolderOptions> FolderOf(const Arguments& a) {
 
 // Makes the frames of --frames in a folder.
 Result<void> RunFilm(const Arguments& a, const Program& program,
-                     const LensStatisticOptions& statistic, const MissingLimit& limit, int argc,
-                     char** argv) {
+                     const LensStatisticOptions& statistic, RenderSignals* signals,
+                     const MissingLimit& limit, int argc, char** argv) {
   const CommonOptions& common = program.common();
-  StatisticFilmOptions options;
-  options.statistic = statistic;
-  LF_ASSIGN_OR_RETURN(options.folder, FolderOf(a));
+  const EndsSoon without_checkpoints;
+  LF_ASSIGN_OR_RETURN(FolderOptions folder, FolderOf(a));
   ThreadPool pool(common.threads);
-  Result<Opened> opened = Open(a, true, *statistic.stop, pool);
+  Result<Opened> opened = Open(a, true, signals->stop, pool);
   if (!opened) return WithResumeCommand(opened.error(), argc, argv);
   if (a.frames.IsNone(opened->frames)) {
     a.frames.TellNone();
     return common.json ? PrintReport(FilmJson(a, RenderReport())) : Result<void>();
   }
+  StatisticFilm film(statistic);
+  RenderOptions options = RenderOptionsOf(statistic, opened->light_field.encoding);
   options.frames = opened->frames;
-  ProgressMeter meter(ParseProgressStyle(common.progress), "frames");
-  const auto tell = [&](const StatisticFilmProgress& now) {
-    // Progress is counted in thousandths of a frame.
-    const size_t of_frame = 1000 * now.image_count / std::max<size_t>(1, now.image_total);
-    meter.Update(1000 * now.frame_count + of_frame, 1000 * now.frame_total,
+  options.folder = std::move(folder);
+  options.signals = signals;
+  options.source = &film;
+  ProgressMeter meter(ParseProgressStyle(common.progress), "px");
+  const auto tell = [&](const RenderProgress& now) {
+    meter.Update(now.ray_count, now.ray_total,
                  {{"LF image", now.image_count, now.image_total},
                   {"frame", now.frame_count, now.frame_total}});
   };
-  const Result<RenderReport> report =
-      RenderStatisticFilm(std::move(opened->light_field), opened->path, options, pool, tell);
+  LF_ASSIGN_OR_RETURN(Package package, PackageOfFilm(std::move(opened->light_field),
+                                                     std::move(opened->path), options, pool));
+  const Result<RenderReport> report = Render(std::move(package), options, pool, tell);
   if (!report) return WithResumeCommand(report.error(), argc, argv);
   SummariseRender(*report,
                   a.no_contact_sheet ? a.outputs.front()
@@ -442,11 +445,10 @@ Result<void> Run(const Arguments& a, const Program& program, const Given& given,
                  char** argv) {
   LF_ASSIGN_OR_RETURN(const bool has_folder, HasFolder(a, given));
   LF_ASSIGN_OR_RETURN(const MissingLimit limit, a.allow_missing.Limit());
-  const std::atomic<bool>& interrupted = CatchInterrupts();
-  LF_ASSIGN_OR_RETURN(const LensStatisticOptions options,
-                      OptionsOf(a, program.common(), interrupted, given));
-  return has_folder ? RunFilm(a, program, options, limit, argc, argv)
-                    : RunFiles(a, program, options, limit);
+  LF_ASSIGN_OR_RETURN(LensStatisticOptions options, OptionsOf(a, program.common(), given));
+  if (has_folder) return RunFilm(a, program, options, &CatchRenderSignals(), limit, argc, argv);
+  options.stop = &CatchInterrupts();
+  return RunFiles(a, program, options, limit);
 }
 
 }  // namespace

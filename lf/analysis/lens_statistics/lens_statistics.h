@@ -26,10 +26,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "lf/camera/render_camera.h"
@@ -42,8 +40,7 @@
 #include "lf/pixels/files/image_file.h"
 #include "lf/render/collect/collect.h"
 #include "lf/render/state/plate_notes.h"
-#include "lf/render/state/report.h"
-#include "lf/storage/load/lf_image_store.h"
+#include "lf/render/state/run_inputs.h"
 
 namespace lf {
 
@@ -75,9 +72,8 @@ struct LensStatisticOptions {
   // Memory of the whole work. If the values of all elements need more, the frame is made in parts,
   // bands of whole rows, and all LF images are read and collected again for each.
   size_t memory_bytes = size_t{8} << 30;
-  bool strict = false;        // true: a broken LF image is an error
-  bool may_be_black = false;  // true: a frame without any ray is black; false: it is an error
-  bool adds_opacity = false;  // as DevelopOptions::adds_opacity
+  bool strict = false;                      // true: a broken LF image is an error
+  bool adds_opacity = false;                // as DevelopOptions::adds_opacity
   const std::atomic<bool>* stop = nullptr;  // once true, the function ends; may be null
 };
 
@@ -87,7 +83,6 @@ struct StatisticFrame {
   // same statistic (kChannels), or that of the same rays (kLuminance).
   DevelopedFrame picture;
   PlateNotes notes;                   // for the metadata of its file
-  FrameReport report;                 // counts of rays are the numbers of values, as ray_count
   bool keeps_opacity = false;         // true: the opacity in `picture` is that of the LF images
   size_t image_count = 0;             // LF images that may have a ray, broken ones included
   size_t part_count = 1;              // parts in which the frame was made
@@ -104,31 +99,6 @@ RunInputs InputsOfStatistic(const LensStatisticOptions& options);
 
 // kUsage: the lens of the camera has a transmission, which has no share in an order of rays.
 Result<void> CheckStatisticLens(const RenderCamera& camera);
-
-// A light field that is opened once, to make any number of frames by one statistic.
-class StatisticRenderer {
- public:
-  // kUsage: options out of range, or a mosaic filter. kInput: the light field cannot be read.
-  static Result<StatisticRenderer> Open(LightField light_field,
-                                        const LensStatisticOptions& options);
-
-  // Makes a frame as MakeStatisticFrame() does. One call at a time.
-  Result<StatisticFrame> Make(FrameId id, const RenderCamera& camera, ThreadPool& pool,
-                              const std::function<void(size_t, size_t)>& progress) const;
-
-  // The encoding of the light field has room for the undershoot of the filter.
-  const LightField& light_field() const { return *light_field_; }
-  const RayReading& reading() const { return reading_; }
-
- private:
-  StatisticRenderer(LightField light_field, const LensStatisticOptions& options)
-      : light_field_(std::make_unique<LightField>(std::move(light_field))), options_(options) {}
-
-  std::unique_ptr<LightField> light_field_;  // store_ refers to it
-  LensStatisticOptions options_;
-  RayReading reading_{Estimator::kBilinear};
-  std::unique_ptr<LfImageStore> store_;
-};
 
 // Makes a frame of a camera by a statistic over its lens. Virtual LF images are left out. With a
 // focal surface, each element is in focus at its own depth.

@@ -4,221 +4,125 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <memory>
-#include <optional>
 #include <utility>
+#include <vector>
 
-#include "lf/core/log.h"
-#include "lf/film/develop/frame_file.h"
-#include "lf/film/develop/video.h"
-#include "lf/light_field/model/light_field_identity.h"
-#include "lf/render/package/package.h"
-#include "lf/render/pipeline/check_outputs.h"
-#include "lf/render/pipeline/frame_output.h"
-#include "lf/render/pipeline/setup_inputs.h"
-#include "lf/render/state/other_format.h"
-#include "lf/render/state/run_inputs.h"
-#include "lf/render/state/run_state.h"
+#include "lf/analysis/lens_statistics/element_values.h"
+#include "lf/analysis/lens_statistics/statistic_source.h"
+#include "lf/core/byte_text.h"
+#include "lf/render/collect/collected_frame.h"
 
 namespace lf {
 namespace {
 
-double NowSeconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+constexpr size_t kMostPlates = 16;  // plates, each of one LF image, of a frame that are in memory
+constexpr size_t kMiB = size_t{1} << 20;
+
+// Divides the memory for frames that take up to `image_count` LF images, at least 1.
+Result<StatisticPlan> PlanOf(const FilmSetup& setup, const RenderCamera& camera,
+                             size_t image_count) {
+  const size_t memory_bytes = setup.work().memory_bytes;
+  const int width = camera.pinhole.intrinsics.width_px;
+  const int height = camera.pinhole.intrinsics.height_px;
+  const PlateKind kind = PlateKindOf(setup.light_field().encoding, false);
+  const size_t result_bytes =
+      static_cast<size_t>(width) * height * (static_cast<size_t>(kind) * 8 + 4);
+  const size_t row_bytes = ElementValues::BytesOfRow(width, static_cast<int>(kind), image_count);
+  const auto plan_for = [&](size_t bytes, size_t count) {
+    return PlanMemory(bytes, setup.light_field(), setup.film().reading, width, height, count,
+                      setup.pool().thread_count(), 0, false, 1, camera.surface.get());
+  };
+  // A quarter of the memory is for LF images and their plates, more only if they need it.
+  Result<MemoryPlan> collect = plan_for(memory_bytes / 4, std::min(kMostPlates, image_count));
+  if (!collect) collect = plan_for(memory_bytes, 1);
+  if (!collect) return collect.error();
+  const size_t others = collect->total_bytes + result_bytes;
+  if (memory_bytes < others + row_bytes)
+    return OutputError(fmt::format(
+        "--memory {} is too small: the values of a row of {} elements in {} LF images, the "
+        "sums of a frame and two LF images need at least {} MiB",
+        ByteText(memory_bytes), width, image_count, (others + row_bytes) / kMiB + 1));
+  StatisticPlan plan;
+  plan.collect = *collect;
+  const size_t rows = (memory_bytes - others) / row_bytes;
+  plan.rows = static_cast<int>(std::min(rows, static_cast<size_t>(height)));
+  return plan;
 }
 
-// One film, and the results of its frames.
-class FilmMaker {
- public:
-  FilmMaker(const CameraPath& path, const StatisticFilmOptions& options, ThreadPool& pool,
-            const std::function<void(const StatisticFilmProgress&)>& progress)
-      : path_(path),
-        options_(options),
-        folder_(options.folder),
-        pool_(pool),
-        progress_(progress),
-        frames_(options.frames) {}
-
-  Result<RenderReport> Run(LightField light_field) {
-    LF_RETURN_IF_ERROR(Begin(std::move(light_field)));
-    for (const FrameId frame : frames_) {
-      if (state_->finished().contains(frame)) continue;
-      if (IsStopped()) return Interrupted();
-      if (const Result<void> made = MakeFrame(frame); !made)
-        return made.error().kind == ErrorKind::kInterrupted ? Interrupted() : made.error();
-    }
-    return End();
-  }
-
- private:
-  bool IsStopped() const { return options_.statistic.stop != nullptr && *options_.statistic.stop; }
-
-  RenderOptions AsRenderOptions() const {
-    RenderOptions options;
-    options.frames = frames_;
-    options.folder = folder_;
-    return options;
-  }
-
-  Result<void> Begin(LightField light_field) {
-    if (frames_.empty())
-      for (uint32_t frame = 1; frame <= path_.frame_count(); ++frame)
-        frames_.push_back(FrameId{frame});
-    if (path_.shutter.exists())
-      return UsageError(
-          "the path has a shutter, whose blur has no share in an order of rays: leave the shutter "
-          "out");
-    for (const FrameId frame : frames_) LF_RETURN_IF_ERROR(CheckStatisticLens(path_.Camera(frame)));
-    const LightFieldIdentity identity = IdentityOf(light_field);
-    LF_ASSIGN_OR_RETURN(const std::string pixels, PixelsOf(light_field));
-    Package package = PackageOfAll(std::move(light_field), path_, 0);
-    LF_RETURN_IF_ERROR(CheckOutputs(package, AsRenderOptions()));
-    if (folder_.video) {
-      LF_RETURN_IF_ERROR(CheckVideoTool());
-      LF_RETURN_IF_ERROR(CheckVideoTarget(*folder_.video));
-    }
-    LensStatisticOptions statistic = options_.statistic;
-    statistic.may_be_black = true;
-    Result<StatisticRenderer> opened =
-        StatisticRenderer::Open(std::move(package.light_field), statistic);
-    if (!opened) return opened.error();
-    renderer_.emplace(*std::move(opened));
-    return OpenState(identity, pixels);
-  }
-
-  Result<void> OpenState(const LightFieldIdentity& identity, const std::string& pixels) {
-    const LightField& light_field = renderer_->light_field();
-    RunChoices choices;
-    choices.pixels = pixels;
-    choices.film.reading = renderer_->reading();
-    choices.film.lens_weights = LensWeights::kNone;
-    choices.film.guard = false;
-    choices.film.max_angle_rad = options_.statistic.max_angle_rad;
-    choices.format = NameOf(folder_.format);
-    choices.film.adds_opacity = options_.statistic.adds_opacity;
-    choices.look = folder_.picture;
-    RunInputs rays = InputsOfRays(identity, light_field.encoding, choices);
-    for (auto& input : InputsOfStatistic(options_.statistic)) rays.push_back(std::move(input));
-    const RunStateOptions state = {folder_.output_folder,
-                                   "",
-                                   frames_,
-                                   folder_.format,
-                                   folder_.resume,
-                                   folder_.overwrite,
-                                   std::move(rays),
-                                   InputsOfPicture(choices)};
-    LF_ASSIGN_OR_RETURN(state_, RunState::Open(state, path_));
-    WarnOfOtherFormat(folder_.output_folder, frames_, folder_.format);
-    totals_ = state_->earlier();
-    // If nothing of the earlier run is kept, the LF images that it skipped are tried again.
-    if (state_->finished().empty()) totals_.skipped.clear();
-    if (options_.statistic.strict && !totals_.skipped.empty())
-      return InputError(fmt::format(
-          "{{strict}}: the unfinished render has left out {} LF images, the first: {}; leave out "
-          "{{strict}}, or start again with {{overwrite}} instead of {{resume}}",
-          totals_.skipped.size(), totals_.skipped.front().reason));
-    totals_.inputs = state.rays;
-    totals_.inputs.insert(totals_.inputs.end(), state.picture.begin(), state.picture.end());
-    const Intrinsics& plate = path_.Camera(frames_.front()).pinhole.intrinsics;
-    totals_.version = folder_.version;
-    totals_.estimator = Estimator::kBilinear;
-    totals_.width = plate.width_px;
-    totals_.height = plate.height_px;
-    totals_.thread_count = pool_.thread_count();
-    totals_.lf_image_count = RecordedCount(light_field);
-    totals_.has_masks =
-        !light_field.mask_names.empty() || light_field.encoding.alpha == AlphaMeaning::kMask;
-    return {};
-  }
-
-  Result<void> MakeFrame(FrameId id) {
-    StatisticFilmProgress now;
-    now.frame_count =
-        static_cast<size_t>(std::count_if(frames_.begin(), frames_.end(), [this](FrameId frame) {
-          return state_->finished().contains(frame);
-        }));
-    now.frame_total = frames_.size();
-    LF_ASSIGN_OR_RETURN(StatisticFrame frame,
-                        renderer_->Make(id, path_.Camera(id), pool_, [&](size_t done, size_t all) {
-                          now.image_count = done;
-                          now.image_total = all;
-                          if (progress_) progress_(now);
-                        }));
-    frame.notes.fps = path_.fps;
-    frame.notes.version = folder_.version;
-    LF_RETURN_IF_ERROR(WritePicture(
-        frame.notes, std::move(frame.picture), state_->FinishedPath(id), folder_.format,
-        folder_.picture, [this] { return IsStopped(); }, StatisticMetadata(options_.statistic)));
-    totals_.AddSkipped(frame.skipped);
-    totals_.selected_image_count = std::max(totals_.selected_image_count, frame.image_count);
-    totals_.pass_count = std::max(totals_.pass_count, frame.part_count);
-    RenderReport until_now = totals_;
-    until_now.total_s += NowSeconds() - begin_s_;
-    // The totals are written first: a record without them would hide LF images that were skipped.
-    LF_RETURN_IF_ERROR(state_->SaveTotals(until_now));
-    LF_RETURN_IF_ERROR(state_->SaveFinished(frame.report));
-    if (frame.report.rays.image_count == 0)
-      LogWarning(
-          "frame {} is black, because no LF image has a ray for it: widen its aperture, or move "
-          "its camera nearer to the LF cameras",
-          id.value);
-    return {};
-  }
-
-  Result<RenderReport> End() {
-    const FilmFiles film = Files();
-    if (folder_.contact_sheet)
-      if (const Result<void> sheet =
-              film.WriteContactSheet(frames_, static_cast<size_t>(pool_.thread_count()), pool_);
-          !sheet)
-        return sheet.error().kind == ErrorKind::kInterrupted ? Interrupted() : sheet.error();
-    // An error of the video is returned last, because the frames, which matter more, are finished.
-    std::optional<Error> video_error;
-    if (folder_.video)
-      if (const Result<void> video = film.WriteVideo(frames_, *folder_.video); !video)
-        video_error = video.error();
-    if (video_error && video_error->kind == ErrorKind::kInterrupted) return Interrupted();
-    totals_.frames.clear();
-    for (const auto& [frame, report] : state_->finished()) totals_.frames.push_back(report);
-    totals_.total_s += NowSeconds() - begin_s_;
-    totals_.peak_memory_bytes = PeakMemoryBytes();
-    LF_RETURN_IF_ERROR(state_->Close(totals_));
-    if (totals_.IsBlack())
-      return InputError(fmt::format(
-          "{}: all frames are black, because no LF camera has a ray through the lens: open the "
-          "aperture (lens.aperture_diameter in the path), or move the camera to the LF cameras",
-          folder_.output_folder.string()));
-    if (video_error) return *video_error;
-    return std::move(totals_);
-  }
-
-  FilmFiles Files() const {
-    FilmFiles film = FilesOfFilm(path_, AsRenderOptions());
-    film.stop = options_.statistic.stop;
-    return film;
-  }
-
-  Error Interrupted() const { return state_->Interruption(frames_); }
-
-  const CameraPath& path_;
-  const StatisticFilmOptions& options_;
-  const FolderOptions& folder_;
-  ThreadPool& pool_;
-  const std::function<void(const StatisticFilmProgress&)>& progress_;
-  std::vector<FrameId> frames_;
-  std::optional<StatisticRenderer> renderer_;
-  std::unique_ptr<RunState> state_;
-  RenderReport totals_;
-  const double begin_s_ = NowSeconds();
-};
+Result<void> CheckOptions(const LensStatisticOptions& options) {
+  if (options.statistic == LensStatistic::kTrimmed && !(options.trim >= 0 && options.trim < 0.5))
+    return UsageError(fmt::format(
+        "the share {:g} is to be cut at each end: expected a number from 0 to below 0.5",
+        options.trim));
+  if (options.filter == PixelFilter::kMosaic)
+    return UsageError(
+        "the filter mosaic cannot be used for statistics over the lens, because its rays count "
+        "differently in each colour: use auto or another filter");
+  return {};
+}
 
 }  // namespace
 
-Result<RenderReport> RenderStatisticFilm(
-    LightField light_field, const CameraPath& path, const StatisticFilmOptions& options,
-    ThreadPool& pool, const std::function<void(const StatisticFilmProgress&)>& progress) {
-  return FilmMaker(path, options, pool, progress).Run(std::move(light_field));
+RenderOptions RenderOptionsOf(const LensStatisticOptions& options,
+                              const RadianceEncoding& encoding) {
+  RenderOptions render;
+  FilmSettings& film = render.film;
+  film.reading = Estimator::kBilinear;
+  // Prefilters and cubics undershoot and overshoot beside edges, and extremes would show just this.
+  const bool is_extreme =
+      options.statistic == LensStatistic::kMin || options.statistic == LensStatistic::kMax;
+  film.reading.filter = is_extreme && options.filter == PixelFilter::kAuto
+                            ? PixelFilter::kBilinear
+                            : FilterOf(options.filter, encoding, true);
+  film.reading.footprint = options.footprint;
+  film.lens_weights = LensWeights::kNone;
+  film.guard = false;  // virtual LF images are left out
+  film.max_angle_rad = options.max_angle_rad;
+  film.adds_opacity = options.adds_opacity;
+  render.work.memory_bytes = options.memory_bytes;
+  render.work.strict = options.strict;
+  render.work.interrupted = render.work.stop = options.stop;
+  return render;
+}
+
+StatisticFilm::StatisticFilm(const LensStatisticOptions& options) : options_(options) {}
+StatisticFilm::~StatisticFilm() = default;
+
+Result<void> StatisticFilm::Check(const Package& package, const RenderOptions& options) const {
+  LF_RETURN_IF_ERROR(CheckOptions(options_));
+  if (package.path.shutter.exists())
+    return UsageError(
+        "the path has a shutter, whose blur has no share in an order of rays: leave the shutter "
+        "out");
+  for (const FrameId frame : options.frames.empty() ? package.FrameIds() : options.frames)
+    LF_RETURN_IF_ERROR(CheckStatisticLens(package.path.Camera(frame)));
+  return {};
+}
+
+Result<PassPlan> StatisticFilm::Plan(FilmSetup* setup, std::span<const FrameId> frames) {
+  const SelectOptions select = setup->Select();
+  size_t most = 1;
+  for (const FrameId frame : frames) {
+    const TakingFrame taking = TakingOf(*setup, frame);
+    most = std::max(
+        most, SelectImages(setup->index().recorded(), std::span(&taking, 1), select, setup->pool())
+                  .size());
+    if (setup->work().IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
+  }
+  const RenderCamera& camera = setup->path().Camera(frames.front());
+  LF_ASSIGN_OR_RETURN(const StatisticPlan plan, PlanOf(*setup, camera, most));
+  plan_ = std::make_unique<StatisticPlan>(plan);
+  const int height = camera.pinhole.intrinsics.height_px;
+  const bool is_whole = plan.rows == height;
+  return PassPlan{plan.frames_per_pass, plan.collect.frames_finished_at_once,
+                  static_cast<size_t>((height + plan.rows - 1) / plan.rows),
+                  is_whole ? fmt::format("the values of {} frames", plan.frames_per_pass)
+                           : fmt::format("the values of {} of {} rows", plan.rows, height)};
+}
+
+std::unique_ptr<FrameSource> StatisticFilm::Open(const FilmSetup& setup,
+                                                 std::span<const FrameId> frames) const {
+  return std::make_unique<StatisticSource>(setup, options_, *plan_, frames);
 }
 
 }  // namespace lf

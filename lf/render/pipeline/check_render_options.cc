@@ -6,6 +6,7 @@
 #include "lf/render/needs/film_order.h"
 #include "lf/render/pipeline/check_film_settings.h"
 #include "lf/render/pipeline/check_outputs.h"
+#include "lf/render/pipeline/frame_source.h"
 #include "lf/render/pipeline/render.h"
 #include "lf/render/pipeline/resolved_settings.h"
 
@@ -14,6 +15,7 @@ namespace lf {
 Result<void> CheckRenderOptions(const Package& package, const RenderOptions& options) {
   const FilmSettings& film = options.film;
   const FolderOptions& folder = options.folder;
+  if (options.source != nullptr) LF_RETURN_IF_ERROR(options.source->Check(package, options));
   if (film.mode == RenderMode::kRebin && folder.keep_plates)
     return UsageError(
         "{keep_plates} cannot be used with {mode rebin}, which collects no rays and therefore has "

@@ -1,28 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
 // The seam between what makes frames and what keeps them. A FrameSource collects the frames of one
 // pass from LF images, batch by batch, and develops them; RenderPass (render_pass.h) owns the
-// folder: files, records, checkpoints and signals. FilmRenderer is the source of lfrenderer.
+// folder: files, records, checkpoints and signals. FilmRenderer is the source of lfrenderer. A
+// FilmSource makes the sources of all passes of a film.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "lf/core/ids.h"
 #include "lf/core/result.h"
 #include "lf/film/develop/develop.h"
+#include "lf/pixels/files/image_file.h"
 #include "lf/render/collect/collect.h"
+#include "lf/render/package/package.h"
 #include "lf/render/pipeline/develop_frame.h"
 #include "lf/render/state/plate_notes.h"
 #include "lf/render/state/report.h"
+#include "lf/render/state/run_inputs.h"
 #include "lf/render/state/run_state.h"
 #include "lf/selection/select.h"
 
 namespace lf {
+
+class FilmSetup;
+struct RenderOptions;
 
 // Frames are given by their index f, in the order of the frames of the pass.
 class FrameSource {
@@ -96,6 +105,34 @@ class FrameSource {
   virtual Result<void> WritePlateOf(size_t f, const std::filesystem::path& path,
                                     const RunState& state, PlateNotes notes,
                                     std::span<const SkippedImage> skipped) const = 0;
+};
+
+// How a film is divided into passes, each of which reads the LF images of its frames.
+struct PassPlan {
+  size_t frames_per_pass = 1;
+  size_t frames_finished_at_once = 1;  // number of frames that are developed at the same time
+  size_t readings = 1;                 // number of times that a pass reads its LF images
+  std::string fitting;  // what fits in the memory, for messages: "3 plates of 20 MiB"
+};
+
+class FilmSource {
+ public:
+  virtual ~FilmSource() = default;
+
+  // kUsage: the package or the options are not for frames of this source. Called before
+  // CheckRenderOptions() checks what all sources have in common.
+  virtual Result<void> Check(const Package& package, const RenderOptions& options) const = 0;
+  // Returns the inputs of the rays that the settings do not state (InputsOfRays()).
+  virtual RunInputs Inputs() const = 0;
+  // Returns entries for the metadata of all frames.
+  virtual ImageMetadata Metadata() const = 0;
+  // Plans the passes of these frames of the setup; called once before Open(). kOutput: the memory
+  // does not suffice. kInterrupted: WorkSettings::stop is set.
+  virtual Result<PassPlan> Plan(FilmSetup* setup, std::span<const FrameId> frames) = 0;
+  // Returns the source of a pass. The setup and this object must outlive it.
+  //   frames  at most PassPlan::frames_per_pass, ascending
+  virtual std::unique_ptr<FrameSource> Open(const FilmSetup& setup,
+                                            std::span<const FrameId> frames) const = 0;
 };
 
 }  // namespace lf

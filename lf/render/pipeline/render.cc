@@ -18,6 +18,7 @@
 #include "lf/render/pipeline/film_renderer.h"
 #include "lf/render/pipeline/film_setup.h"
 #include "lf/render/pipeline/frame_output.h"
+#include "lf/render/pipeline/frame_source.h"
 #include "lf/render/pipeline/render_pass.h"
 #include "lf/render/pipeline/setup_inputs.h"
 #include "lf/render/state/other_format.h"
@@ -47,12 +48,37 @@ WorkSettings WithFlags(WorkSettings work, const RenderSignals* signals) {
   return work;
 }
 
+// The source of frames that are made of their rays.
+class FilmOfRays final : public FilmSource {
+ public:
+  Result<void> Check(const Package& /*package*/, const RenderOptions& /*options*/) const override {
+    return {};
+  }
+  RunInputs Inputs() const override { return {}; }
+  ImageMetadata Metadata() const override { return {}; }
+  Result<PassPlan> Plan(FilmSetup* setup, std::span<const FrameId> /*frames*/) override {
+    LF_RETURN_IF_ERROR(setup->PlanSlabs());
+    const MemoryPlan& plan = setup->plan();
+    return PassPlan{
+        plan.frames_per_pass, plan.frames_finished_at_once, 1,
+        fmt::format("{} plates of {} MiB", plan.frames_per_pass, plan.plate_bytes >> 20)};
+  }
+  std::unique_ptr<FrameSource> Open(const FilmSetup& setup,
+                                    std::span<const FrameId> frames) const override {
+    return std::make_unique<FilmRenderer>(setup, frames);
+  }
+};
+
 // One render: its inputs, and the results of its passes.
 class Renderer {
  public:
   Renderer(const RenderOptions& options, ThreadPool& pool,
            const std::function<void(const RenderProgress&)>& progress)
-      : options_(options), folder_(options.folder), pool_(pool), progress_(progress) {}
+      : options_(options),
+        folder_(options.folder),
+        source_(options.source != nullptr ? *options.source : rays_),
+        pool_(pool),
+        progress_(progress) {}
 
   Result<RenderReport> Run(Package package);
 
@@ -76,6 +102,9 @@ class Renderer {
 
   const RenderOptions& options_;
   const FolderOptions& folder_;
+  FilmOfRays rays_;
+  FilmSource& source_;
+  PassPlan plan_;
   ThreadPool& pool_;
   const std::function<void(const RenderProgress&)>& progress_;
   std::unique_ptr<FilmSetup> setup_;
@@ -129,6 +158,7 @@ Result<void> Renderer::Begin(Package package) {
 // run.
 Result<void> Renderer::OpenState() {
   LF_ASSIGN_OR_RETURN(RunInputs rays, InputsOfRays(*setup_));
+  for (auto& input : source_.Inputs()) rays.push_back(std::move(input));
   const RunStateOptions state_options = StateOptions(*setup_, folder_, std::move(rays));
   LF_ASSIGN_OR_RETURN(state_, RunState::Open(state_options, setup_->path()));
   if (!setup_->film().shard)
@@ -193,17 +223,19 @@ std::vector<FrameId> Renderer::FramesToRender() {
 }
 
 Result<void> Renderer::RunPasses(std::vector<FrameId> frames) {
-  LF_RETURN_IF_ERROR(setup_->PlanSlabs());
+  LF_ASSIGN_OR_RETURN(plan_, source_.Plan(setup_.get(), frames));
   const bool rebins = setup_->film().Rebins();
-  const size_t per_pass = setup_->plan().frames_per_pass;
-  totals_.pass_count = (frames.size() + per_pass - 1) / per_pass;
+  const size_t per_pass = plan_.frames_per_pass;
+  totals_.pass_count = (frames.size() + per_pass - 1) / per_pass * plan_.readings;
   if (totals_.pass_count > 1)
-    LogInfo("{} frames in {} passes over the LF images: {} plates of {} MiB fit in the memory",
-            frames.size(), totals_.pass_count, per_pass, setup_->plan().plate_bytes >> 20);
+    LogInfo("{} frames in {} passes over the LF images: {} fit in the memory", frames.size(),
+            totals_.pass_count, plan_.fitting);
   DumpClock clock(folder_.dump_every_s, NowSeconds());
   const PassContext context = {
       *setup_,
       folder_,
+      source_.Metadata(),
+      plan_.frames_finished_at_once,
       options_.signals,
       *state_,
       clock,
@@ -274,7 +306,7 @@ Result<void> Renderer::FinishEarly(const PassContext& context, std::vector<Frame
   std::erase_if(*frames, [&early](FrameId frame) {
     return std::binary_search(early.begin(), early.end(), frame);
   });
-  const size_t per_pass = setup_->plan().frames_per_pass;
+  const size_t per_pass = plan_.frames_per_pass;
   for (size_t begin = 0; begin < early.size(); begin += per_pass) {
     const size_t count = std::min(per_pass, early.size() - begin);
     const std::span<const FrameId> of_pass = std::span(early).subspan(begin, count);
@@ -288,7 +320,7 @@ Result<void> Renderer::RunPass(const PassContext& context, std::span<const Frame
   const auto finished_before = std::count_if(frames.begin(), frames.end(), [this](FrameId frame) {
     return state_->finished().contains(frame);
   });
-  RenderPass pass(context, std::make_unique<FilmRenderer>(*setup_, frames), early);
+  RenderPass pass(context, source_.Open(*setup_, frames), early);
   LF_RETURN_IF_ERROR(pass.Prepare());
   const std::vector<SelectedImage>& images = pass.source().images();
   if (images.empty() && IsWhole() && totals_.pass_count == 1 && !state_->HasPlates() &&

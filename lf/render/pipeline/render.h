@@ -17,6 +17,8 @@
 
 namespace lf {
 
+class FilmSource;
+
 // If FilmSettings::shard is set, the render writes plates for MergeShards() instead of frames and a
 // contact sheet.
 struct RenderOptions {
@@ -25,6 +27,8 @@ struct RenderOptions {
   WorkSettings work;                 // how the work is done; `signals` replaces its flags
   FolderOptions folder;              // where the frames are written
   RenderSignals* signals = nullptr;  // requests to this render, read often; may be null
+  // What makes the frames (frame_source.h); null: their rays, as FilmRenderer collects them.
+  FilmSource* source = nullptr;
 };
 
 // Checks the options of the film (CheckFilmSettings()) and of the folder. Render() calls this

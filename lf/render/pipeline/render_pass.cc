@@ -95,7 +95,7 @@ Result<void> RenderPass::Finish() {
 
 // Writes frames and their records. kInterrupted: the state was written.
 Result<void> RenderPass::FinishFrames(std::span<const size_t> frames) {
-  const size_t at_once = context_.setup.plan().frames_finished_at_once;
+  const size_t at_once = context_.frames_finished_at_once;
   Result<void> finished;
   for (size_t begin = 0; finished && begin < frames.size(); begin += at_once)
     finished = FinishAtOnce(frames.subspan(begin, std::min(at_once, frames.size() - begin)));
@@ -169,7 +169,7 @@ Result<FrameReport> RenderPass::WritePicture(size_t f, const std::optional<Compl
   const FrameFormat format = context_.folder.format;
   RenderedFrame frame = source_->Develop(f, completion, IsExr(format), is_interrupted);
   LF_RETURN_IF_ERROR(lf::WritePicture(NotesOf(f), std::move(frame.picture), to, format,
-                                      context_.folder.picture, is_interrupted));
+                                      context_.folder.picture, is_interrupted, context_.metadata));
   return frame.report;
 }
 

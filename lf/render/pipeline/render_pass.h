@@ -29,7 +29,9 @@ inline double NowSeconds() {
 struct PassContext {
   const FilmSetup& setup;
   const FolderOptions& folder;
-  RenderSignals* signals;  // requests to the render; may be null
+  ImageMetadata metadata;          // entries for the metadata of all frames
+  size_t frames_finished_at_once;  // PassPlan::frames_finished_at_once
+  RenderSignals* signals;          // requests to the render; may be null
   RunState& state;
   DumpClock& clock;
   // Totals of finished passes and earlier runs; its total_s is that of earlier runs alone.
