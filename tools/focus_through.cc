@@ -70,7 +70,7 @@ PATH is rendered: the ground of a height map, for example, is seen through trees
 Without a name that ends in .exr or .png, OUT is a folder. It receives the frames of PATH as of
 lfrenderer: frame_0001.exr ..., contact_sheet.png and report.json. On Ctrl-C (SIGINT), SIGTERM and
 SIGHUP the program ends with exit code 5. Finished frames are kept, and --resume continues with the
-frame that was being made.)",
+frames that were being made.)",
 };
 
 struct Arguments {
@@ -117,14 +117,15 @@ void AddRunning(CLI::App& app, Arguments& a) {
   running
       .Add("--memory SIZE", a.memory,
            "Upper limit of the memory that is used\n"
-           "SIZE: such as 8G or 512M. If the values of all rays need more, a frame is made in "
-           "parts, and LF images are read once for each.")
+           "SIZE: such as 8G or 512M. Frames whose values fit together read each LF image once. If "
+           "the values of one frame need more, it is made in parts, and LF images are read once "
+           "for each.")
       ->check(NotEmpty());
   CLI::Option* const resume = running.AddFlag(
       "--resume", a.resume,
       "Continue the unfinished frames of a folder\n"
       "The inputs and the options that change frames must be the same. Finished frames are kept; "
-      "the frame that was being made is begun again.");
+      "the frames that were being made are begun again.");
   running
       .AddFlag("--overwrite", a.overwrite,
                "Replace files that exist, and remove an unfinished render\n"

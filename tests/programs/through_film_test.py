@@ -30,6 +30,7 @@ camera: {{field_of_view_deg: 53.13, position: [0, 0, -1], look_at: [0, 0, 0]}}
 lens: {{aperture_diameter: 0.2, focus_distance: 1{lens}}}
 keyframes: {{position: [{{time: 0, value: [{start}, 0, -1]}}, {{time: 0.08, value: [0.03, 0.01, -1]}}]}}
 """
+ONE_FRAME = "160M"  # suffices for the values of one frame of 600 x 400 elements, and not for two
 CLOCK = "shutter: {angle_deg: 180, samples: 4}"
 
 
@@ -122,9 +123,33 @@ class ThroughFilmTest(ProgramTestCase):
         capture = cv2.VideoCapture(str(video))
         self.assertEqual(int(capture.get(cv2.CAP_PROP_FRAME_COUNT)), 3)
 
+    def test_frames_that_fit_together_read_each_lf_image_once(self):
+        path = self.path(frames=4, size="600, 400")
+        passes, films = [], []
+        for memory in ("8G", "300M", ONE_FRAME, "80M"):
+            out = self.folder / memory
+            result = self.call(FOCUS, "through", self.field, path, "-o", out, "--memory", memory, "--threads", 2,
+                               "--no-contact-sheet", "--progress", "json")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            report = json.loads((out / "report.json").read_text())
+            passes.append(report["passes"])
+            films.append(self.frames_of(out))
+            last = json.loads([line for line in result.stderr.splitlines() if line.startswith("{")][-1])
+            read, total = last["counts"]["LF image"]
+            self.assertEqual(read, total)
+            if memory == "8G":  # fewer than the sum of all frames
+                self.assertEqual(read, report["lf_images_selected"])
+                self.assertGreater(sum(frame["lf_images"] for frame in report["frames"]), 3 * read)
+        self.assertEqual((passes[0], passes[2]), (1, 4), passes)
+        self.assertTrue(1 < passes[1] < 4 < passes[3], passes)
+        for film in films:
+            self.assertEqual(film, films[0])
+
     def begin(self, out, path, *options):
+        """Begins a film whose frames are made one after another, because the values of two do not fit together."""
         return subprocess.Popen(list(map(str, [FOCUS, "through", self.field, path, "-o", out, "--progress", "none",
-                                               "--no-contact-sheet", *options])), stderr=subprocess.PIPE, text=True)
+                                               "--memory", ONE_FRAME, "--no-contact-sheet", *options])),
+                                stderr=subprocess.PIPE, text=True)
 
     def test_interrupted_and_killed_it_resumes_to_the_same_bits(self):
         path = self.path(frames=4, size="600, 400")

@@ -69,8 +69,9 @@ struct LensStatisticOptions {
   PixelFilter filter = PixelFilter::kAuto;
   std::optional<PixelFootprint> footprint = std::nullopt;  // unset: stated or measured
   std::optional<double> max_angle_rad = std::nullopt;      // as in SelectOptions
-  // Memory of the whole work. If the values of all elements need more, the frame is made in parts,
-  // bands of whole rows, and all LF images are read and collected again for each.
+  // Memory of the whole work. Frames of a film whose values fit together read each LF image once. If
+  // the values of one frame need more, it is made in parts, bands of whole rows, and all LF images
+  // are read and collected again for each.
   size_t memory_bytes = size_t{8} << 30;
   bool strict = false;                      // true: a broken LF image is an error
   bool adds_opacity = false;                // as DevelopOptions::adds_opacity

@@ -46,6 +46,12 @@ Result<StatisticPlan> PlanOf(const FilmSetup& setup, const RenderCamera& camera,
   plan.collect = *collect;
   const size_t rows = (memory_bytes - others) / row_bytes;
   plan.rows = static_cast<int>(std::min(rows, static_cast<size_t>(height)));
+  if (plan.rows < height) return plan;
+  // Further frames share the reading of the LF images, if their values fit.
+  const size_t values_bytes = static_cast<size_t>(height) * row_bytes;
+  const size_t plates_bytes = collect->frames_per_pass * collect->plate_bytes;
+  plan.frames_per_pass =
+      1 + (memory_bytes - others - values_bytes) / (values_bytes + plates_bytes + result_bytes);
   return plan;
 }
 
