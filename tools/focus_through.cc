@@ -19,6 +19,7 @@
 #include "tools/common/light_field_argument.h"
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
+#include "tools/common/setting_options.h"
 #include "tools/common/validators.h"
 #include "tools/focus_frame.h"
 #include "tools/render_end.h"
@@ -80,6 +81,7 @@ struct Arguments {
   AllowMissing allow_missing;
   std::vector<std::string> outputs;
   PictureArguments picture;
+  SettingOptions settings;
   std::string statistic = "median", order = "channels", filter = "auto", lf_pixels = "auto";
   std::string format = "auto", memory = "8G", video;
   double trim = 0.25, max_angle_deg = 0;
@@ -166,6 +168,11 @@ void AddOptions(CLI::App& app, Arguments& a) {
       "auto: bilinear for min and max, because other filters undershoot and overshoot "
       "beside edges; bicubic for brackets (LF images of one pose with different "
       "exposures); otherwise prefiltered");
+  a.settings.AddTo(
+      picture, "max_images",
+      "Maximum number of LF images per frame (all)\n"
+      "A frame has the statistic of the rays of N LF images, which are drawn at random "
+      "from those that contribute to it: more noise, in less time and memory.");
   picture.AddChoice("--lf-pixels", a.lf_pixels, {"auto", "areas", "points"},
                     "What LF pixels show, for --filter prefiltered\n"
                     "areas: the mean light of their area, as in photographs\n"
@@ -244,6 +251,9 @@ Result<LensStatisticOptions> OptionsOf(const Arguments& a, const CommonOptions& 
                        .value_or(PixelFilter::kAuto);
   if (a.lf_pixels != "auto")
     options.footprint = a.lf_pixels == "areas" ? PixelFootprint::kArea : PixelFootprint::kPoint;
+  FilmSettings film;
+  LF_RETURN_IF_ERROR(a.settings.Set(&film));
+  options.max_image_count = film.max_image_count;
   if (a.max_angle_deg > 0) options.max_angle_rad = RadiansFromDegrees(a.max_angle_deg);
   LF_ASSIGN_OR_RETURN(options.memory_bytes, ParseByteSize(a.memory, "--memory"));
   options.strict = common.strict;

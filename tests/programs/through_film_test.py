@@ -145,6 +145,24 @@ class ThroughFilmTest(ProgramTestCase):
         for film in films:
             self.assertEqual(film, films[0])
 
+    def test_a_statistic_of_fewer_lf_images(self):
+        path = self.path(frames=2)
+        few, _ = self.film("few", path, "--max-images", 9, "--statistic", "mean", "--format", "exr-float")
+        report = json.loads((few / "report.json").read_text())
+        self.assertEqual(report["inputs"]["max_images"], "9")
+        self.assertEqual([frame["lf_images"] for frame in report["frames"]], [9, 9])
+        rendered = self.folder / "rendered"
+        self.succeeds(RENDERER, self.field, path, "-o", rendered, "--lens-weights", "none", "--format", "exr-float",
+                      "--max-images", 9, "--filter", "prefiltered")
+        for name in self.frames_of(few):
+            ours, theirs = channels_of(few / name), channels_of(rendered / name)
+            for channel in ("R", "G", "B", "count.R"):
+                np.testing.assert_array_equal(ours[channel], theirs[channel])
+        self.assertEqual(self.frames_of(few)["frame_0002.exr"],
+                         self.single(path, 2, "--max-images", 9, "--statistic", "mean", "--format", "exr-float"))
+        self.fails(2, ["max_images"], FOCUS, "through", self.field, path, "-o", few, "--resume", "--statistic", "mean",
+                   "--format", "exr-float")
+
     def begin(self, out, path, *options):
         """Begins a film whose frames are made one after another, because the values of two do not fit together."""
         return subprocess.Popen(list(map(str, [FOCUS, "through", self.field, path, "-o", out, "--progress", "none",

@@ -69,9 +69,12 @@ struct LensStatisticOptions {
   PixelFilter filter = PixelFilter::kAuto;
   std::optional<PixelFootprint> footprint = std::nullopt;  // unset: stated or measured
   std::optional<double> max_angle_rad = std::nullopt;      // as in SelectOptions
-  // Memory of the whole work. Frames of a film whose values fit together read each LF image once. If
-  // the values of one frame need more, it is made in parts, bands of whole rows, and all LF images
-  // are read and collected again for each.
+  // If set, a frame has the statistic of the rays of at most this number of LF images, above 0: a
+  // random choice of those that contribute to it.
+  std::optional<size_t> max_image_count = std::nullopt;
+  // Memory of the whole work. Frames of a film whose values fit together read each LF image once.
+  // If the values of one frame need more, it is made in parts, bands of whole rows, and all LF
+  // images are read and collected again for each.
   size_t memory_bytes = size_t{8} << 30;
   bool strict = false;                      // true: a broken LF image is an error
   bool adds_opacity = false;                // as DevelopOptions::adds_opacity

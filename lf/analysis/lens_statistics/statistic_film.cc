@@ -67,6 +67,31 @@ Result<void> CheckOptions(const LensStatisticOptions& options) {
   return {};
 }
 
+// Refuses what has no meaning for a statistic.
+Result<void> CheckSettings(const RenderOptions& options) {
+  const FilmSettings& film = options.film;
+  if (film.shard)
+    return UsageError(
+        "--shard: a statistic over the lens needs all values of an element together, and the "
+        "statistics of parts of the LF images cannot be added: divide the frames with --frames or "
+        "packages, or take fewer LF images with --max-images");
+  if (film.HasStopRule() || film.require.samples || film.require.noise)
+    return UsageError(
+        "--stop-when, --require: the rules measure sums of rays and the noise of their mean, which "
+        "a statistic over the lens does not have: leave them out, or take fewer LF images with "
+        "--max-images");
+  if (film.Rebins())
+    return UsageError(fmt::format(
+        "--mode {}: rebinned rays are interpolated, and have no share in an order of recorded "
+        "rays: use --mode collect",
+        NameOf(film.mode)));
+  if (options.folder.keep_plates || !options.folder.finish_early.empty())
+    return UsageError(
+        "--keep-plates, --finish: a statistic over the lens has no sums that could be kept or "
+        "continued: leave them out");
+  return {};
+}
+
 }  // namespace
 
 RenderOptions RenderOptionsOf(const LensStatisticOptions& options,
@@ -84,6 +109,7 @@ RenderOptions RenderOptionsOf(const LensStatisticOptions& options,
   film.lens_weights = LensWeights::kNone;
   film.guard = false;  // virtual LF images are left out
   film.max_angle_rad = options.max_angle_rad;
+  film.max_image_count = options.max_image_count;
   film.adds_opacity = options.adds_opacity;
   render.work.memory_bytes = options.memory_bytes;
   render.work.strict = options.strict;
@@ -96,6 +122,7 @@ StatisticFilm::~StatisticFilm() = default;
 
 Result<void> StatisticFilm::Check(const Package& package, const RenderOptions& options) const {
   LF_RETURN_IF_ERROR(CheckOptions(options_));
+  LF_RETURN_IF_ERROR(CheckSettings(options));
   if (package.path.shutter.exists())
     return UsageError(
         "the path has a shutter, whose blur has no share in an order of rays: leave the shutter "
