@@ -39,7 +39,7 @@ Result<StatisticPlan> PlanOf(const FilmSetup& setup, const RenderCamera& camera,
   const size_t others = collect->total_bytes + result_bytes;
   if (memory_bytes < others + row_bytes)
     return OutputError(fmt::format(
-        "--memory {} is too small: the values of a row of {} elements in {} LF images, the "
+        "{{memory {}}} is too small: the values of a row of {} elements in {} LF images, the "
         "sums of a frame and two LF images need at least {} MiB",
         ByteText(memory_bytes), width, image_count, (others + row_bytes) / kMiB + 1));
   StatisticPlan plan;
@@ -72,22 +72,22 @@ Result<void> CheckSettings(const RenderOptions& options) {
   const FilmSettings& film = options.film;
   if (film.shard)
     return UsageError(
-        "--shard: a statistic over the lens needs all values of an element together, and the "
-        "statistics of parts of the LF images cannot be added: divide the frames with --frames or "
-        "packages, or take fewer LF images with --max-images");
+        "{shard}: a statistic over the lens needs all values of an element together, and the "
+        "statistics of parts of the LF images cannot be added: divide the frames with {frames} or "
+        "packages, or take fewer LF images with {max_images}");
   if (film.HasStopRule() || film.require.samples || film.require.noise)
     return UsageError(
-        "--stop-when, --require: the rules measure sums of rays and the noise of their mean, which "
+        "{stop_when}, {require}: the rules measure sums of rays and the noise of their mean, which "
         "a statistic over the lens does not have: leave them out, or take fewer LF images with "
-        "--max-images");
+        "{max_images}");
   if (film.Rebins())
     return UsageError(fmt::format(
-        "--mode {}: rebinned rays are interpolated, and have no share in an order of recorded "
-        "rays: use --mode collect",
+        "{{mode {}}}: rebinned rays are interpolated, and have no share in an order of recorded "
+        "rays: use {{mode collect}}",
         NameOf(film.mode)));
   if (options.folder.keep_plates || !options.folder.finish_early.empty())
     return UsageError(
-        "--keep-plates, --finish: a statistic over the lens has no sums that could be kept or "
+        "{keep_plates}, {finish}: a statistic over the lens has no sums that could be kept or "
         "continued: leave them out");
   return {};
 }

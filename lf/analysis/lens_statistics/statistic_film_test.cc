@@ -27,11 +27,11 @@ TEST(StatisticFilm, RefusesWhatHasNoMeaningForAStatistic) {
          o.film.shard = Shard{1, 2};
        }},
       {"noise", [](RenderOptions& o) { o.film.stop_when.noise = 0.1; }},
-      {"--stop-when", [](RenderOptions& o) { o.film.stop_when.samples = 8; }},
-      {"--require", [](RenderOptions& o) { o.film.require.samples = 8; }},
-      {"--mode rebin", [](RenderOptions& o) { o.film.mode = RenderMode::kRebin; }},
-      {"--keep-plates", [](RenderOptions& o) { o.folder.keep_plates = true; }},
-      {"--finish", [](RenderOptions& o) { o.folder.finish_early = {FrameId{1}}; }},
+      {"{stop_when}", [](RenderOptions& o) { o.film.stop_when.samples = 8; }},
+      {"{require}", [](RenderOptions& o) { o.film.require.samples = 8; }},
+      {"{mode rebin}", [](RenderOptions& o) { o.film.mode = RenderMode::kRebin; }},
+      {"{keep_plates}", [](RenderOptions& o) { o.folder.keep_plates = true; }},
+      {"{finish}", [](RenderOptions& o) { o.folder.finish_early = {FrameId{1}}; }},
   };
   for (const Case& one : cases) {
     SCOPED_TRACE(one.word);

@@ -67,7 +67,7 @@ void FilmRenderer::End(RunState* state) {
   if (rebinned_->facts().is_too_coarse)
     LogWarning(
         "some cells of rebinned rays are so wide that they got more LF pixels than they can "
-        "hold, so that rays were lost: make --r-st or --r-uv smaller");
+        "hold, so that rays were lost: make {{r_st}} or {{r_uv}} smaller");
   state->RemoveRays();
 }
 
