@@ -27,7 +27,7 @@ struct RenderOptions {
   WorkSettings work;                 // how the work is done; `signals` replaces its flags
   FolderOptions folder;              // where the frames are written
   RenderSignals* signals = nullptr;  // requests to this render, read often; may be null
-  // What makes the frames (frame_source.h); null: their rays, as FilmRenderer collects them.
+  // The maker of the frames (frame_source.h); null: FilmRenderer, which collects their rays.
   FilmSource* source = nullptr;
 };
 
