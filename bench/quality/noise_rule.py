@@ -145,7 +145,7 @@ def measure(build, data, size, noises, ways):
                 for number, (frame, end) in enumerate(zip(frames, ends), 1):
                     name = f"frame_{number:04d}.plate"
                     rows.append({"way": way, "focus": list(FOCUS)[number - 1], "asked": noise, **frame,
-                                 "places_in_all": end["ranks"], "lf_images_in_all": end["lf_images"],
+                                 "ranks_in_all": end["ranks"], "lf_images_in_all": end["lf_images"],
                                  "reached_by_all": end["reached"],
                                  **compare(Measured(out / name), Measured(whole / name))})
                     print(rows[-1], flush=True)
@@ -153,21 +153,21 @@ def measure(build, data, size, noises, ways):
 
 
 def table(rows):
-    lines = ["| way | focused on | X | noise reached | reached / X | places | LF images | difference to all "
+    lines = ["| way | focused on | X | noise reached | reached / X | ranks | LF images | difference to all "
              "LF images: RMS, as expected | 90 % are below, as expected |", "|" + " --- |" * 9]
     for row in rows:
-        early = row["places"] < row["places_in_all"]
+        early = row["ranks"] < row["ranks_in_all"]
         differences = (f"{row['rms']:.5f}, {row['rms_expected']:.5f} | {row['most']:.5f}, "
                        f"{row['most_expected']:.5f}" if early else "is that of all | ")
         lines.append(f"| {row['way']} | {row['focus']} | {row['asked']} | {row['reached']:.5f} | "
-                     f"{row['reached'] / row['asked']:.3f} | {row['places']} of {row['places_in_all']} | "
+                     f"{row['reached'] / row['asked']:.3f} | {row['ranks']} of {row['ranks_in_all']} | "
                      f"{row['lf_images']} of {row['lf_images_in_all']} | {differences} |")
-    ended = [row for row in rows if row["places"] < row["places_in_all"]]
+    ended = [row for row in rows if row["ranks"] < row["ranks_in_all"]]
     ratios = [row["reached"] / row["asked"] for row in ended]
     rms = [row["rms"] / row["rms_expected"] for row in ended]
     most = [row["most"] / row["most_expected"] for row in ended]
-    lines += ["", f"{len(ended)} of {len(rows)} frames ended early, after {min(row['places'] for row in ended)} "
-              f"to {max(row['places'] for row in ended)} places: with {min(ratios):.3f} to {max(ratios):.3f} of "
+    lines += ["", f"{len(ended)} of {len(rows)} frames ended early, after {min(row['ranks'] for row in ended)} "
+              f"to {max(row['ranks'] for row in ended)} ranks: with {min(ratios):.3f} to {max(ratios):.3f} of "
               f"the noise asked for. Their differences to frames of all LF images are {min(rms):.2f} to "
               f"{max(rms):.2f} of the RMS expected, and {min(most):.2f} to {max(most):.2f} of the 90th "
               "percentile expected. All elements of a frame take the same LF images, in one order for "

@@ -91,7 +91,7 @@ std::vector<BatchImage> BatchOf(std::span<const Resident> images, size_t begin, 
   for (size_t i = begin; i < end; ++i) {
     BatchImage& one = batch[i - begin];
     one.id = LfImageId{static_cast<uint32_t>(i)};
-    one.place = one.id.value;
+    one.rank = one.id.value;
     one.shared_pixels = &images[i].image->pixels;
     one.shared_opacity = &images[i].image->opacity;
   }

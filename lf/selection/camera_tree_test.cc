@@ -84,7 +84,7 @@ TEST(ImageIndex, OfRecordedImagesIsThatOfALightFieldWithoutVirtualOnes) {
   EXPECT_EQ(&alone.recorded(), &alone);
   EXPECT_FALSE(all.is_of_recorded());
   EXPECT_TRUE(all.recorded().is_of_recorded());
-  EXPECT_EQ(all.recorded().PlaceOf(LfImageId{7}), all.PlaceOf(LfImageId{7}));
+  EXPECT_EQ(all.recorded().RankOf(LfImageId{7}), all.RankOf(LfImageId{7}));
   const CameraTree &tree = all.recorded().tree(), &expected = alone.tree();
   ASSERT_EQ(tree.leaf_count(), expected.leaf_count());
   for (size_t leaf = 0; leaf < tree.leaf_count(); ++leaf) {
@@ -200,9 +200,9 @@ TEST(Select, FindsWhatEveryCameraAskedAloneSays) {
   std::map<uint32_t, SelectedImage> expected;
   for (uint32_t i = 0; i < field.size(); ++i)
     for (const TakingFrame& frame : frames) {
-      const uint32_t place = index.PlaceOf({i});
+      const uint32_t place = index.RankOf({i});
       const PixelRect rect = ContributingRect(field.Camera({i}), frame.camera);
-      if (rect.empty() || !frame.places.Holds(place)) continue;
+      if (rect.empty() || !frame.ranks.Holds(place)) continue;
       SelectedImage& image = expected[place];
       image.id = {i};
       image.rect = Bounds(image.rect, rect);
@@ -213,7 +213,7 @@ TEST(Select, FindsWhatEveryCameraAskedAloneSays) {
   ASSERT_EQ(found.size(), expected.size());
   auto wanted = expected.begin();
   for (const SelectedImage& image : found) {
-    EXPECT_EQ(image.place, wanted->first);
+    EXPECT_EQ(image.rank, wanted->first);
     EXPECT_EQ(image.id, wanted->second.id);
     EXPECT_EQ(image.rect, wanted->second.rect);
     EXPECT_EQ(image.frame_count, wanted->second.frame_count);

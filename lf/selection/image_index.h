@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // An index of a light field, made once for many selections: an octree of the LF cameras, and the
-// place of each LF image in the order (image_order.h).
+// rank of each LF image in the order (image_order.h).
 #pragma once
 
 #include <cstdint>
@@ -17,29 +17,29 @@ namespace lf {
 // LF camera.
 class ImageIndex {
  public:
-  //   places  ranks (image_order.h) of all LF images of light_field, which may be a package: a part
+  //   ranks  ranks (image_order.h) of all LF images of light_field, which may be a package: a part
   //           of a larger light field
-  ImageIndex(const LightField& light_field, ImagePlaces places);
-  // Makes an index with the random order that ShuffledPlaces() makes from `seed`.
+  ImageIndex(const LightField& light_field, ImageRanks ranks);
+  // Makes an index with the random order that ShuffledRanks() makes from `seed`.
   explicit ImageIndex(const LightField& light_field, uint64_t seed = 0);
 
   const LightField& light_field() const { return tree_.light_field(); }
   const CameraTree& tree() const { return tree_; }
-  uint32_t PlaceOf(LfImageId id) const { return places_.of_images[id.value]; }
-  // Exclusive upper bound of all places.
-  uint32_t place_end() const { return places_.end; }
-  // Returns an index of the recorded LF images alone, with the same ids and places: this index if
+  uint32_t RankOf(LfImageId id) const { return ranks_.of_images[id.value]; }
+  // Exclusive upper bound of all ranks.
+  uint32_t rank_end() const { return ranks_.end; }
+  // Returns an index of the recorded LF images alone, with the same ids and ranks: this index if
   // no LF image is virtual.
   const ImageIndex& recorded() const { return recorded_ ? *recorded_ : *this; }
   // Returns true if the index leaves out virtual LF images.
   bool is_of_recorded() const { return content_ == CameraTree::Content::kRecorded; }
 
  private:
-  ImageIndex(const LightField& light_field, ImagePlaces places, CameraTree::Content content);
+  ImageIndex(const LightField& light_field, ImageRanks ranks, CameraTree::Content content);
 
   CameraTree::Content content_;
   CameraTree tree_;
-  ImagePlaces places_;
+  ImageRanks ranks_;
   std::unique_ptr<ImageIndex> recorded_;  // null if no LF image is virtual
 };
 

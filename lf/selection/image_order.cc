@@ -25,12 +25,12 @@ std::vector<uint32_t> Shuffle(size_t image_count, uint64_t seed) {
   return ids;
 }
 
-ImagePlaces PlacesOf(const std::vector<uint32_t>& ids) {
-  ImagePlaces places;
-  places.end = static_cast<uint32_t>(ids.size());
-  places.of_images.resize(ids.size());
-  for (uint32_t place = 0; place < ids.size(); ++place) places.of_images[ids[place]] = place;
-  return places;
+ImageRanks RanksOf(const std::vector<uint32_t>& ids) {
+  ImageRanks ranks;
+  ranks.end = static_cast<uint32_t>(ids.size());
+  ranks.of_images.resize(ids.size());
+  for (uint32_t rank = 0; rank < ids.size(); ++rank) ranks.of_images[ids[rank]] = rank;
+  return ranks;
 }
 
 std::vector<uint32_t> ByArea(std::vector<uint32_t> shuffled,
@@ -68,14 +68,14 @@ class Takers {
 std::vector<uint32_t> RoundRobin(const std::vector<uint32_t>& shuffled,
                                  std::span<const std::vector<ImageRays>> frames) {
   const Takers takers(shuffled.size(), frames);
-  const ImagePlaces places = PlacesOf(shuffled);
+  const ImageRanks ranks = RanksOf(shuffled);
   // [frame]: LF images that the frame takes, the next one last. An LF image that is already in the
   // order is removed once it is last.
   std::vector<std::vector<uint32_t>> waiting(frames.size());
   for (size_t f = 0; f < frames.size(); ++f) {
     for (const ImageRays& image : frames[f]) waiting[f].push_back(image.id.value);
     std::sort(waiting[f].begin(), waiting[f].end(),
-              [&](uint32_t a, uint32_t b) { return places.of_images[a] > places.of_images[b]; });
+              [&](uint32_t a, uint32_t b) { return ranks.of_images[a] > ranks.of_images[b]; });
   }
   std::vector<uint64_t> rays(frames.size(), 0);
   using Turn = std::pair<uint64_t, uint32_t>;  // number of rays of a frame so far, its index
@@ -112,16 +112,16 @@ std::optional<ImageOrder> ImageOrderOf(const std::string& name) {
   return ValueNamed(name, {ImageOrder::kShuffle, ImageOrder::kRoundRobin, ImageOrder::kArea});
 }
 
-ImagePlaces ShuffledPlaces(size_t image_count, uint64_t seed) {
-  return PlacesOf(Shuffle(image_count, seed));
+ImageRanks ShuffledRanks(size_t image_count, uint64_t seed) {
+  return RanksOf(Shuffle(image_count, seed));
 }
 
-ImagePlaces PlacesInOrder(ImageOrder order, size_t image_count, uint64_t seed,
-                          std::span<const std::vector<ImageRays>> frames) {
+ImageRanks RanksInOrder(ImageOrder order, size_t image_count, uint64_t seed,
+                        std::span<const std::vector<ImageRays>> frames) {
   std::vector<uint32_t> shuffled = Shuffle(image_count, seed);
-  if (order == ImageOrder::kArea) return PlacesOf(ByArea(std::move(shuffled), frames));
-  if (order == ImageOrder::kRoundRobin) return PlacesOf(RoundRobin(shuffled, frames));
-  return PlacesOf(shuffled);
+  if (order == ImageOrder::kArea) return RanksOf(ByArea(std::move(shuffled), frames));
+  if (order == ImageOrder::kRoundRobin) return RanksOf(RoundRobin(shuffled, frames));
+  return RanksOf(shuffled);
 }
 
 }  // namespace lf

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The order in which frames take LF images (thesis 4.2.1). The *place* of an LF image is its rank
-// in the order, from 0.
+// The order in which frames take LF images (thesis 4.2.1). The *rank* of an LF image is its
+// position in the order, from 0.
 //
 // An order always contains all LF images of the whole light field, and is made for all frames of a
-// film. A place (in limits, stop rules, and the progress of an interrupted frame) therefore means
+// film. A rank (in limits, stop rules, and the progress of an interrupted frame) therefore means
 // the same for any choice of frames, any passes and any packages.
 #pragma once
 
@@ -32,13 +32,13 @@ enum class ImageOrder { kShuffle, kRoundRobin, kArea };
 const char* NameOf(ImageOrder order);
 std::optional<ImageOrder> ImageOrderOf(const std::string& name);
 
-// Places (ranks in the order) of the LF images of a whole light field, or of a package.
-struct ImagePlaces {
-  std::vector<uint32_t> of_images;  // [LfImageId] place of the LF image
+// The ranks in the order of the LF images of a whole light field, or of a package.
+struct ImageRanks {
+  std::vector<uint32_t> of_images;  // [LfImageId] rank of the LF image
   uint32_t end = 0;                 // number of LF images of the whole light field
 };
 
-ImagePlaces ShuffledPlaces(size_t image_count, uint64_t seed);
+ImageRanks ShuffledRanks(size_t image_count, uint64_t seed);
 
 // An LF image that a frame takes, and the number of its rays for that frame.
 struct ImageRays {
@@ -46,11 +46,11 @@ struct ImageRays {
   uint64_t ray_count = 0;
 };
 
-// Returns the places of all LF images in an order. Unless the order is kShuffle, LF images that no
+// Returns the ranks of all LF images in an order. Unless the order is kShuffle, LF images that no
 // frame takes come last. LF images that the order does not distinguish are in the order of
 // kShuffle.
 //   frames  for each frame, the LF images that it takes, in any order; unused for kShuffle
-ImagePlaces PlacesInOrder(ImageOrder order, size_t image_count, uint64_t seed,
-                          std::span<const std::vector<ImageRays>> frames);
+ImageRanks RanksInOrder(ImageOrder order, size_t image_count, uint64_t seed,
+                        std::span<const std::vector<ImageRays>> frames);
 
 }  // namespace lf

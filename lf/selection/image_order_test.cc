@@ -26,19 +26,19 @@ std::vector<std::vector<ImageRays>> Film() {
   return frames;
 }
 
-std::vector<uint32_t> Ids(const ImagePlaces& places) {
-  std::vector<uint32_t> ids(places.of_images.size(), UINT32_MAX);
-  for (uint32_t id = 0; id < places.of_images.size(); ++id) ids[places.of_images[id]] = id;
+std::vector<uint32_t> Ids(const ImageRanks& ranks) {
+  std::vector<uint32_t> ids(ranks.of_images.size(), UINT32_MAX);
+  for (uint32_t id = 0; id < ranks.of_images.size(); ++id) ids[ranks.of_images[id]] = id;
   return ids;
 }
 
 // Counts the rays that each frame gets from the first tenth of the LF images that any frame takes.
 // Returns the standard deviation of these counts divided by their mean.
 double SpreadAfterATenth(ImageOrder order, const std::vector<std::vector<ImageRays>>& frames) {
-  const ImagePlaces places = PlacesInOrder(order, kImages, 3, frames);
+  const ImageRanks ranks = RanksInOrder(order, kImages, 3, frames);
   std::vector<uint32_t> taken;
   for (const auto& frame : frames)
-    for (const ImageRays& image : frame) taken.push_back(places.of_images[image.id.value]);
+    for (const ImageRays& image : frame) taken.push_back(ranks.of_images[image.id.value]);
   std::sort(taken.begin(), taken.end());
   taken.erase(std::unique(taken.begin(), taken.end()), taken.end());
   const uint32_t tenth = taken[taken.size() / 10];
@@ -46,7 +46,7 @@ double SpreadAfterATenth(ImageOrder order, const std::vector<std::vector<ImageRa
   for (const auto& frame : frames) {
     double rays = 0;
     for (const ImageRays& image : frame)
-      if (places.of_images[image.id.value] < tenth) rays += static_cast<double>(image.ray_count);
+      if (ranks.of_images[image.id.value] < tenth) rays += static_cast<double>(image.ray_count);
     sum += rays;
     squares += rays * rays;
   }
@@ -57,9 +57,9 @@ double SpreadAfterATenth(ImageOrder order, const std::vector<std::vector<ImageRa
 TEST(ImageOrder, EveryOrderHasEachImageOnce) {
   for (const ImageOrder order :
        {ImageOrder::kShuffle, ImageOrder::kRoundRobin, ImageOrder::kArea}) {
-    const ImagePlaces places = PlacesInOrder(order, kImages, 3, Film());
-    EXPECT_EQ(places.end, kImages);
-    std::vector<uint32_t> ids = Ids(places);
+    const ImageRanks ranks = RanksInOrder(order, kImages, 3, Film());
+    EXPECT_EQ(ranks.end, kImages);
+    std::vector<uint32_t> ids = Ids(ranks);
     if (order != ImageOrder::kShuffle) {
       // The LF images at the end are those that no frame takes.
       std::vector<uint32_t> last(ids.end() - 100, ids.end());
@@ -73,9 +73,9 @@ TEST(ImageOrder, EveryOrderHasEachImageOnce) {
 }
 
 TEST(ImageOrder, TheShuffleDependsOnTheSeedAlone) {
-  EXPECT_EQ(PlacesInOrder(ImageOrder::kShuffle, kImages, 5, Film()).of_images,
-            ShuffledPlaces(kImages, 5).of_images);
-  EXPECT_NE(ShuffledPlaces(kImages, 6).of_images, ShuffledPlaces(kImages, 5).of_images);
+  EXPECT_EQ(RanksInOrder(ImageOrder::kShuffle, kImages, 5, Film()).of_images,
+            ShuffledRanks(kImages, 5).of_images);
+  EXPECT_NE(ShuffledRanks(kImages, 6).of_images, ShuffledRanks(kImages, 5).of_images);
 }
 
 TEST(ImageOrder, RoundRobinFillsFramesEqually) {
@@ -89,7 +89,7 @@ TEST(ImageOrder, RoundRobinFillsFramesEqually) {
 // take the next LF image. The test counts the rays itself.
 TEST(ImageOrder, RoundRobinServesTheFrameWithTheFewestRays) {
   const auto frames = Film();
-  const std::vector<uint32_t> ids = Ids(PlacesInOrder(ImageOrder::kRoundRobin, kImages, 3, frames));
+  const std::vector<uint32_t> ids = Ids(RanksInOrder(ImageOrder::kRoundRobin, kImages, 3, frames));
   std::vector<uint64_t> rays(kFrames, 0);
   std::vector<size_t> waiting(kFrames);
   for (size_t f = 0; f < kFrames; ++f) waiting[f] = frames[f].size();
@@ -105,7 +105,7 @@ TEST(ImageOrder, RoundRobinServesTheFrameWithTheFewestRays) {
           --waiting[f];
         }
     if (fewest == UINT64_MAX) break;  // only LF images that no frame takes are left
-    ASSERT_EQ(fewest_of_takers, fewest) << "image " << id << " at place " << taken;
+    ASSERT_EQ(fewest_of_takers, fewest) << "image " << id << " at rank " << taken;
     for (size_t f = 0; f < kFrames; ++f)
       for (const ImageRays& image : frames[f])
         if (image.id.value == id) rays[f] += image.ray_count;
@@ -119,7 +119,7 @@ TEST(ImageOrder, RoundRobinServesTheFrameWithTheFewestRays) {
 TEST(ImageOrder, AreaCountsTheRaysOfAllFramesTogether) {
   const std::vector<std::vector<ImageRays>> frames = {{{LfImageId{3}, 30}, {LfImageId{0}, 60}},
                                                       {{LfImageId{2}, 50}, {LfImageId{3}, 40}}};
-  EXPECT_EQ(Ids(PlacesInOrder(ImageOrder::kArea, 4, 3, frames)),
+  EXPECT_EQ(Ids(RanksInOrder(ImageOrder::kArea, 4, 3, frames)),
             (std::vector<uint32_t>{3, 0, 2, 1}));
 }
 
@@ -128,7 +128,7 @@ TEST(ImageOrder, AreaTakesTheLargestFirst) {
   std::vector<uint64_t> rays(kImages, 0);
   for (const auto& frame : frames)
     for (const ImageRays& image : frame) rays[image.id.value] += image.ray_count;
-  const std::vector<uint32_t> ids = Ids(PlacesInOrder(ImageOrder::kArea, kImages, 3, frames));
+  const std::vector<uint32_t> ids = Ids(RanksInOrder(ImageOrder::kArea, kImages, 3, frames));
   for (size_t i = 1; i < ids.size(); ++i) EXPECT_GE(rays[ids[i - 1]], rays[ids[i]]);
 }
 

@@ -102,12 +102,12 @@ class Selector {
       const PinholeCamera camera = light_field.Camera(id);
       SelectedImage image;
       image.id = id;
-      image.place = index_.PlaceOf(id);
+      image.rank = index_.RankOf(id);
       std::optional<ImageOverlap> overlap;
       for (const Visit& visit : visits) {
         const size_t f = visit.frame;
         const TakingFrame& frame = frames_[f];
-        if (!frame.places.Holds(image.place)) continue;
+        if (!frame.ranks.Holds(image.rank)) continue;
         if (visit.all_inside == 0 && regions_[f].Misses(camera.CentreWorld())) continue;
         if (!IsWithinAngle(lf_camera, frame.camera, options_)) continue;
         if (frame.takes && !frame.takes(id)) continue;
@@ -147,11 +147,11 @@ std::vector<size_t> LeavesOf(std::span<const Visit> visits) {
   return begin;
 }
 
-// Sorts by place in the order, and joins the entries of the same LF image, which were found for
+// Sorts by rank in the order, and joins the entries of the same LF image, which were found for
 // different frames.
-void JoinByPlace(std::vector<SelectedImage>* images) {
+void JoinByRank(std::vector<SelectedImage>* images) {
   std::sort(images->begin(), images->end(),
-            [](const SelectedImage& a, const SelectedImage& b) { return a.place < b.place; });
+            [](const SelectedImage& a, const SelectedImage& b) { return a.rank < b.rank; });
   size_t count = 0;
   for (const SelectedImage& image : *images) {
     if (count > 0 && (*images)[count - 1].id == image.id) {
@@ -199,7 +199,7 @@ std::vector<SelectedImage> SelectImages(const ImageIndex& index,
     for (const std::vector<SelectedImage>& part : found)
       images.insert(images.end(), part.begin(), part.end());
   }
-  JoinByPlace(&images);
+  JoinByRank(&images);
   return images;
 }
 
@@ -211,17 +211,17 @@ std::vector<SelectedImage> SelectImages(const ImageIndex& index,
   return SelectImages(index, taking, options, pool);
 }
 
-PlaceRange PlacesOfFirst(size_t image_count, const ImageIndex& index, const TakingFrame& frame,
-                         const SelectOptions& options) {
-  return PlacesOfFirst(image_count, index, std::span(&frame, 1), options);
+RankRange RanksOfFirst(size_t image_count, const ImageIndex& index, const TakingFrame& frame,
+                       const SelectOptions& options) {
+  return RanksOfFirst(image_count, index, std::span(&frame, 1), options);
 }
 
-PlaceRange PlacesOfFirst(size_t image_count, const ImageIndex& index,
-                         std::span<const TakingFrame> instants, const SelectOptions& options) {
+RankRange RanksOfFirst(size_t image_count, const ImageIndex& index,
+                       std::span<const TakingFrame> instants, const SelectOptions& options) {
   LF_CHECK(image_count > 0);
   const LightField& light_field = index.light_field();
   struct Candidate {
-    uint32_t place;
+    uint32_t rank;
     LfImageId id;
     size_t instant;
   };
@@ -231,26 +231,26 @@ PlaceRange PlacesOfFirst(size_t image_count, const ImageIndex& index,
     index.tree().ForEachLeaf(region, [&](size_t leaf, bool all_inside) {
       for (const LfImageId id : index.tree().Leaf(leaf))
         if (all_inside || !region.Misses(light_field.Camera(id).CentreWorld()))
-          candidates.push_back({index.PlaceOf(id), id, i});
+          candidates.push_back({index.RankOf(id), id, i});
     });
   }
   std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-    return std::pair(a.place, a.instant) < std::pair(b.place, b.instant);
+    return std::pair(a.rank, a.instant) < std::pair(b.rank, b.instant);
   });
   CellsOfLast cells;
   size_t found = 0;
-  std::optional<uint32_t> last_found;  // place of the last LF image that was found
-  for (const auto& [place, id, instant] : candidates) {
+  std::optional<uint32_t> last_found;  // rank of the last LF image that was found
+  for (const auto& [rank, id, instant] : candidates) {
     if (IsInterrupted(options)) break;
-    if (last_found == place) continue;
+    if (last_found == rank) continue;
     const TakingFrame& frame = instants[instant];
     if (!IsWithinAngle(light_field.cameras[id.value], frame.camera, options)) continue;
     if (frame.takes && !frame.takes(id)) continue;
     const PixelRect rect = ContributingRect(light_field.Camera(id), frame.camera,
                                             cells.Of(light_field, id), options.reach);
     if (rect.empty()) continue;
-    last_found = place;
-    if (++found == image_count) return {0, place + 1};
+    last_found = rank;
+    if (++found == image_count) return {0, rank + 1};
   }
   return {};
 }

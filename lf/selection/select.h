@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Selects the LF images that frames need, by ascending places (thesis 4.2.1).
+// Selects the LF images that frames need, by ascending ranks (thesis 4.2.1).
 #pragma once
 
 #include <atomic>
@@ -19,19 +19,19 @@
 
 namespace lf {
 
-// A range [begin, end) of places (ranks of LF images) in the order (image_order.h).
-struct PlaceRange {
+// A range [begin, end) of ranks of LF images in the order (image_order.h).
+struct RankRange {
   uint32_t begin = 0;
   uint32_t end = UINT32_MAX;
 
-  bool Holds(uint32_t place) const { return begin <= place && place < end; }
-  friend bool operator==(const PlaceRange&, const PlaceRange&) = default;
+  bool Holds(uint32_t rank) const { return begin <= rank && rank < end; }
+  friend bool operator==(const RankRange&, const RankRange&) = default;
 };
 
 // A frame for which LF images are selected.
 struct TakingFrame {
   RenderCamera camera;
-  PlaceRange places = {};  // the frame takes only the LF images at these places
+  RankRange ranks = {};  // the frame takes only the LF images at these ranks
   // Returns false if the frame does not take an LF image, because all lens weights of the image in
   // this frame are 0. Empty: no LF image is left out for this reason. Several threads call it at
   // the same time.
@@ -43,7 +43,7 @@ struct TakingFrame {
 // misses the frame.
 struct SelectedImage {
   LfImageId id;
-  uint32_t place = 0;        // rank of the LF image in the order (image_order.h)
+  uint32_t rank = 0;         // rank of the LF image in the order (image_order.h)
   PixelRect rect;            // bounds of its rectangles for all frames that take it
   uint32_t frame_count = 0;  // number of frames that take it
   uint64_t ray_count = 0;    // sum of the pixel counts of these rectangles: rays to be tested
@@ -67,7 +67,7 @@ struct SelectOptions {
 bool IsWithinAngle(const LfCamera& lf_camera, const RenderCamera& frame,
                    const SelectOptions& options);
 
-// Returns the LF images that contribute to at least one frame, by ascending places (thesis: "a more
+// Returns the LF images that contribute to at least one frame, by ascending ranks (thesis: "a more
 // even result among all rendered frames, even before all have been processed"). The result does not
 // depend on the number of threads.
 std::vector<SelectedImage> SelectImages(const ImageIndex& index,
@@ -78,13 +78,13 @@ std::vector<SelectedImage> SelectImages(const ImageIndex& index,
                                         std::span<const RenderCamera> frames,
                                         const SelectOptions& options, ThreadPool& pool);
 
-// Returns the range [0, end) of places that contains exactly the first `image_count` contributing
-// LF images that the frame takes. If there are fewer, the range is all places. image_count must be
-// above 0. frame.places and options.whole_images are not used. The second form counts an LF image
+// Returns the range [0, end) of ranks that contains exactly the first `image_count` contributing
+// LF images that the frame takes. If there are fewer, the range is all ranks. image_count must be
+// above 0. frame.ranks and options.whole_images are not used. The second form counts an LF image
 // that contributes to at least one of the instants of a frame once.
-PlaceRange PlacesOfFirst(size_t image_count, const ImageIndex& index, const TakingFrame& frame,
-                         const SelectOptions& options);
-PlaceRange PlacesOfFirst(size_t image_count, const ImageIndex& index,
-                         std::span<const TakingFrame> instants, const SelectOptions& options);
+RankRange RanksOfFirst(size_t image_count, const ImageIndex& index, const TakingFrame& frame,
+                       const SelectOptions& options);
+RankRange RanksOfFirst(size_t image_count, const ImageIndex& index,
+                       std::span<const TakingFrame> instants, const SelectOptions& options);
 
 }  // namespace lf

@@ -80,18 +80,18 @@ TEST(Select, PlacesAreThoseOfTheWholeLightFieldWhateverTheFrames) {
   ThreadPool pool(2);
   const LightField grid = Grid();
   const std::vector<RenderCamera> frames = {Frame(0.05, 0), Frame(0.03, 0.04)};
-  const ImagePlaces order = ShuffledPlaces(grid.size(), 3);
+  const ImageRanks order = ShuffledRanks(grid.size(), 3);
   for (const auto& part : {std::span(frames), std::span(frames).first(1)}) {
     uint32_t last = 0;
     for (const SelectedImage& image : SelectImages(ImageIndex(grid, 3), part, {}, pool)) {
-      EXPECT_EQ(order.of_images[image.id.value], image.place);
-      EXPECT_GE(image.place, last);
-      last = image.place + 1;
+      EXPECT_EQ(order.of_images[image.id.value], image.rank);
+      EXPECT_GE(image.rank, last);
+      last = image.rank + 1;
     }
   }
 }
 
-// An index of only the LF images that contribute, with their places, gives the same result as an
+// An index of only the LF images that contribute, with their ranks, gives the same result as an
 // index of the whole light field.
 TEST(Select, APartWithItsPlacesIsAsGoodAsTheWhole) {
   ThreadPool pool(2);
@@ -101,24 +101,24 @@ TEST(Select, APartWithItsPlacesIsAsGoodAsTheWhole) {
   std::vector<SelectedImage> images = SelectImages(whole, frames, {}, pool);
   LightField part;
   part.intrinsics = grid.intrinsics;
-  ImagePlaces places{{}, whole.place_end()};
+  ImageRanks ranks{{}, whole.rank_end()};
   for (uint32_t i = 0; i < grid.size(); ++i) {
     const auto is_it = [i](const SelectedImage& image) { return image.id.value == i; };
     if (std::none_of(images.begin(), images.end(), is_it)) continue;
     part.cameras.push_back(grid.cameras[i]);
     part.image_names.push_back("x.png");
-    places.of_images.push_back(whole.PlaceOf(LfImageId{i}));
+    ranks.of_images.push_back(whole.RankOf(LfImageId{i}));
   }
-  const ImageIndex index(part, places);
+  const ImageIndex index(part, ranks);
   const auto again = SelectImages(index, frames, {}, pool);
   ASSERT_EQ(again.size(), images.size());
   for (size_t i = 0; i < images.size(); ++i) {
-    EXPECT_EQ(again[i].place, images[i].place);
+    EXPECT_EQ(again[i].rank, images[i].rank);
     EXPECT_EQ(again[i].rect, images[i].rect);
     EXPECT_EQ(again[i].ray_count, images[i].ray_count);
   }
   for (const RenderCamera& frame : frames)
-    EXPECT_EQ(PlacesOfFirst(10, index, {frame}, {}), PlacesOfFirst(10, whole, {frame}, {}));
+    EXPECT_EQ(RanksOfFirst(10, index, {frame}, {}), RanksOfFirst(10, whole, {frame}, {}));
 }
 
 TEST(Select, LfCamerasBeyondTheAngleAreLeftOut) {
@@ -136,7 +136,7 @@ TEST(Select, LfCamerasBeyondTheAngleAreLeftOut) {
   EXPECT_FALSE(some.empty());
   for (const SelectedImage& image : some) EXPECT_EQ(image.id.value % 2, 1U);
   TakingFrame first = {frames[0]};
-  first.places = PlacesOfFirst(5, ImageIndex(grid), first, options);
+  first.ranks = RanksOfFirst(5, ImageIndex(grid), first, options);
   EXPECT_EQ(SelectImages(ImageIndex(grid), {&first, 1}, options, pool).size(), 5u);
   options.max_angle_rad = RadiansFromDegrees(6);
   EXPECT_EQ(SelectImages(ImageIndex(grid), frames, options, pool).size(), all.size());
@@ -146,15 +146,15 @@ TEST(Select, EveryFrameTakesItsFirstImagesOnly) {
   ThreadPool pool(2);
   const LightField grid = Grid();
   std::vector<TakingFrame> frames = {{Frame(0.05, 0)}, {Frame(0.03, 0.08)}, {Frame(0.0101, 0)}};
-  for (TakingFrame& frame : frames) frame.places = PlacesOfFirst(10, ImageIndex(grid), frame, {});
-  EXPECT_EQ(frames[2].places, PlaceRange{});  // this frame has only five LF images
+  for (TakingFrame& frame : frames) frame.ranks = RanksOfFirst(10, ImageIndex(grid), frame, {});
+  EXPECT_EQ(frames[2].ranks, RankRange{});  // this frame has only five LF images
   for (size_t f = 0; f < 2; ++f) {
     const auto all = SelectImages(ImageIndex(grid), {&frames[f].camera, 1}, {}, pool);
     const auto some = SelectImages(ImageIndex(grid), {&frames[f], 1}, {}, pool);
     ASSERT_EQ(some.size(), 10u);
     for (size_t i = 0; i < some.size(); ++i) EXPECT_EQ(some[i].id, all[i].id);
     // Selecting from the end of the frame's range on returns the remaining LF images.
-    const TakingFrame rest = {frames[f].camera, {frames[f].places.end}};
+    const TakingFrame rest = {frames[f].camera, {frames[f].ranks.end}};
     EXPECT_EQ(SelectImages(ImageIndex(grid), {&rest, 1}, {}, pool).size(), all.size() - 10);
   }
   uint32_t taken = 0;
@@ -168,12 +168,12 @@ TEST(Select, LimitsCountAnImageOfSeveralInstantsOnce) {
   const ImageIndex index(grid);
   const TakingFrame first = {Frame(0.05, 0)}, second = {Frame(0.05, 0.03)};
   const TakingFrame twice[] = {first, first};
-  EXPECT_EQ(PlacesOfFirst(5, index, twice, {}), PlacesOfFirst(5, index, first, {}));
+  EXPECT_EQ(RanksOfFirst(5, index, twice, {}), RanksOfFirst(5, index, first, {}));
   ThreadPool pool(2);
   for (const size_t count : {1, 3, 7}) {
     TakingFrame instants[] = {first, second};
-    const PlaceRange places = PlacesOfFirst(count, index, instants, {});
-    for (TakingFrame& instant : instants) instant.places = places;
+    const RankRange ranks = RanksOfFirst(count, index, instants, {});
+    for (TakingFrame& instant : instants) instant.ranks = ranks;
     EXPECT_EQ(SelectImages(index, instants, {}, pool).size(), count);
   }
 }

@@ -59,8 +59,8 @@ FrameUse UseOfCameras(const ImageIndex& index, const RenderCamera& frame,
   // follow the last used one in the order.
   std::vector<bool> is_late(index.light_field().size(), false);
   if (options.max_image_count && !use.used.empty() && use.used.size() >= *options.max_image_count) {
-    const uint32_t last = index.PlaceOf(use.used.back().id);
-    for (uint32_t i = 0; i < is_late.size(); ++i) is_late[i] = index.PlaceOf(LfImageId{i}) > last;
+    const uint32_t last = index.RankOf(use.used.back().id);
+    for (uint32_t i = 0; i < is_late.size(); ++i) is_late[i] = index.RankOf(LfImageId{i}) > last;
   }
   const Reasons reasons(index, frame, options);
   use.of_cameras.assign(is_late.size(), CameraUse::kOutside);

@@ -98,7 +98,7 @@ Result<void> PageScene::OpenPackages() {
       return {};
     }
     auto package = std::make_unique<Package>(std::move(read));
-    package_indices_.push_back(std::make_unique<ImageIndex>(package->light_field, package->places));
+    package_indices_.push_back(std::make_unique<ImageIndex>(package->light_field, package->ranks));
     packages_.push_back(std::move(package));
   }
   return {};

@@ -214,7 +214,7 @@ Result<void> LensViews::Load(const PixelRect& part, ThreadPool& pool,
   LF_RETURN_IF_ERROR(outcome);
   if (stop != nullptr && *stop) return Error{ErrorKind::kInterrupted, "interrupted"};
   std::sort(skipped_.begin(), skipped_.end(),
-            [](const SkippedImage& a, const SkippedImage& b) { return a.place < b.place; });
+            [](const SkippedImage& a, const SkippedImage& b) { return a.rank < b.rank; });
   for (LensView& view : views)
     if (!view.rect.empty() && view.rect.width() > 1 && view.rect.height() > 1)
       views_.push_back(std::move(view));

@@ -24,7 +24,7 @@ void ElementValues::TakeRow(int y, const LensStatisticOptions& options, SensorPl
   for (int x = 0; x < width_; ++x) {
     const uint32_t count = Count(x, y);
     if (count == 0) continue;
-    const RankRange ranks = RanksOf(options.statistic, options.trim, count);
+    const ValueRange ranks = RanksOf(options.statistic, options.trim, count);
     if (options.order == StatisticOrder::kChannels) {
       for (size_t c = 0; c < channels_; ++c)
         plate->Add(x, y, static_cast<int>(c), SumOfRanks(Values(x, y, c), ranks));
@@ -34,7 +34,7 @@ void ElementValues::TakeRow(int y, const LensStatisticOptions& options, SensorPl
   }
 }
 
-void ElementValues::TakeByLuminance(int x, int y, const RankRange& ranks,
+void ElementValues::TakeByLuminance(int x, int y, const ValueRange& ranks,
                                     std::vector<RankedRay>* rays, SensorPlate* plate) {
   const bool has_opacity = plate->has_opacity();
   rays->clear();

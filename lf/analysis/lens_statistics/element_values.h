@@ -55,7 +55,7 @@ class ElementValues {
   std::span<uint16_t> Values(int x, int y, size_t channel) {
     return {Of(x, y, channel), Count(x, y)};
   }
-  void TakeByLuminance(int x, int y, const RankRange& ranks, std::vector<RankedRay>* rays,
+  void TakeByLuminance(int x, int y, const ValueRange& ranks, std::vector<RankedRay>* rays,
                        SensorPlate* plate);
 
   int width_;

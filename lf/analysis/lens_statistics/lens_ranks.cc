@@ -8,7 +8,7 @@ namespace lf {
 namespace {
 
 template <typename T>
-void Partition(std::span<T> values, const RankRange& ranks) {
+void Partition(std::span<T> values, const ValueRange& ranks) {
   const auto begin = values.begin() + static_cast<std::ptrdiff_t>(ranks.begin);
   const auto end = values.begin() + static_cast<std::ptrdiff_t>(ranks.end);
   if (ranks.begin > 0) std::nth_element(values.begin(), begin, values.end());
@@ -17,7 +17,7 @@ void Partition(std::span<T> values, const RankRange& ranks) {
 
 }  // namespace
 
-RankRange RanksOf(LensStatistic statistic, double trim, size_t count) {
+ValueRange RanksOf(LensStatistic statistic, double trim, size_t count) {
   // Makes 0.29 of 100 values 29, although the product is a little below.
   constexpr double kRounding = 1e-9;
   switch (statistic) {
@@ -39,13 +39,13 @@ RankRange RanksOf(LensStatistic statistic, double trim, size_t count) {
   return {0, count};
 }
 
-ElementSum SumOfRanks(std::span<uint16_t> values, const RankRange& ranks) {
+ElementSum SumOfRanks(std::span<uint16_t> values, const ValueRange& ranks) {
   Partition(values, ranks);
   ElementSum sum{0, ranks.end - ranks.begin};
   for (size_t i = ranks.begin; i < ranks.end; ++i) sum.sum += values[i];
   return sum;
 }
 
-void PutRanksInPlace(std::span<RankedRay> rays, const RankRange& ranks) { Partition(rays, ranks); }
+void PutRanksInPlace(std::span<RankedRay> rays, const ValueRange& ranks) { Partition(rays, ranks); }
 
 }  // namespace lf

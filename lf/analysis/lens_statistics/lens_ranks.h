@@ -13,18 +13,18 @@ namespace lf {
 
 // The ranks [begin, end) of the values of an element, in ascending order, whose mean a statistic
 // is.
-struct RankRange {
+struct ValueRange {
   size_t begin = 0;
   size_t end = 0;
-  friend bool operator==(const RankRange&, const RankRange&) = default;
+  friend bool operator==(const ValueRange&, const ValueRange&) = default;
 };
 
 // Returns the ranks of a statistic of `count` values, at least 1. The range is never empty.
 //   trim  LensStatisticOptions::trim; used by kTrimmed only
-RankRange RanksOf(LensStatistic statistic, double trim, size_t count);
+ValueRange RanksOf(LensStatistic statistic, double trim, size_t count);
 
 // Returns the sum and the number of the values with these ranks. Changes the order of the values.
-ElementSum SumOfRanks(std::span<uint16_t> values, const RankRange& ranks);
+ElementSum SumOfRanks(std::span<uint16_t> values, const ValueRange& ranks);
 
 // One ray, for an order by luminance.
 struct RankedRay {
@@ -44,6 +44,6 @@ struct RankedRay {
 };
 
 // Changes the order of the rays, so that those with these ranks stand at [ranks.begin, ranks.end).
-void PutRanksInPlace(std::span<RankedRay> rays, const RankRange& ranks);
+void PutRanksInPlace(std::span<RankedRay> rays, const ValueRange& ranks);
 
 }  // namespace lf

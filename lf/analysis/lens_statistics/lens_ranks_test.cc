@@ -19,19 +19,19 @@ std::vector<uint16_t> Noise(size_t count, uint64_t seed) {
 }
 
 TEST(LensRanks, TheMedianOfAnEvenNumberIsTheMeanOfTheTwoInTheMiddle) {
-  EXPECT_EQ(RanksOf(LensStatistic::kMedian, 0, 1), (RankRange{0, 1}));
-  EXPECT_EQ(RanksOf(LensStatistic::kMedian, 0, 2), (RankRange{0, 2}));
-  EXPECT_EQ(RanksOf(LensStatistic::kMedian, 0, 5), (RankRange{2, 3}));
-  EXPECT_EQ(RanksOf(LensStatistic::kMedian, 0, 6), (RankRange{2, 4}));
+  EXPECT_EQ(RanksOf(LensStatistic::kMedian, 0, 1), (ValueRange{0, 1}));
+  EXPECT_EQ(RanksOf(LensStatistic::kMedian, 0, 2), (ValueRange{0, 2}));
+  EXPECT_EQ(RanksOf(LensStatistic::kMedian, 0, 5), (ValueRange{2, 3}));
+  EXPECT_EQ(RanksOf(LensStatistic::kMedian, 0, 6), (ValueRange{2, 4}));
 }
 
 TEST(LensRanks, AShareIsCutAtEachEndAndRoundedDown) {
-  EXPECT_EQ(RanksOf(LensStatistic::kTrimmed, 0.25, 8), (RankRange{2, 6}));
-  EXPECT_EQ(RanksOf(LensStatistic::kTrimmed, 0.25, 7), (RankRange{1, 6}));
-  EXPECT_EQ(RanksOf(LensStatistic::kTrimmed, 0.29, 100), (RankRange{29, 71}));
-  EXPECT_EQ(RanksOf(LensStatistic::kTrimmed, 0, 9), (RankRange{0, 9}));
+  EXPECT_EQ(RanksOf(LensStatistic::kTrimmed, 0.25, 8), (ValueRange{2, 6}));
+  EXPECT_EQ(RanksOf(LensStatistic::kTrimmed, 0.25, 7), (ValueRange{1, 6}));
+  EXPECT_EQ(RanksOf(LensStatistic::kTrimmed, 0.29, 100), (ValueRange{29, 71}));
+  EXPECT_EQ(RanksOf(LensStatistic::kTrimmed, 0, 9), (ValueRange{0, 9}));
   for (size_t count = 1; count < 40; ++count) {
-    const RankRange ranks = RanksOf(LensStatistic::kTrimmed, 0.4999999999, count);
+    const ValueRange ranks = RanksOf(LensStatistic::kTrimmed, 0.4999999999, count);
     EXPECT_LT(ranks.begin, ranks.end) << count;
     EXPECT_EQ(ranks.begin, count - ranks.end);
   }
@@ -44,7 +44,7 @@ TEST(LensRanks, SumsAreThoseOfSortedValuesInAnyOrder) {
     for (const LensStatistic statistic :
          {LensStatistic::kMin, LensStatistic::kMax, LensStatistic::kMedian, LensStatistic::kTrimmed,
           LensStatistic::kMean}) {
-      const RankRange ranks = RanksOf(statistic, 0.2, count);
+      const ValueRange ranks = RanksOf(statistic, 0.2, count);
       uint64_t sum = 0;
       for (size_t i = ranks.begin; i < ranks.end; ++i) sum += sorted[i];
       for (int turn = 0; turn < 3; ++turn) {

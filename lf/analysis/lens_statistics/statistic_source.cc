@@ -40,11 +40,11 @@ int StatisticSource::height() const {
   return setup_.path().Camera(frames_.front().id).pinhole.intrinsics.height_px;
 }
 
-bool StatisticSource::Frame::Takes(uint32_t place) const {
+bool StatisticSource::Frame::Takes(uint32_t rank) const {
   const auto found = std::lower_bound(
-      images.begin(), images.end(), place,
-      [](const SelectedImage& image, uint32_t wanted) { return image.place < wanted; });
-  return found != images.end() && found->place == place;
+      images.begin(), images.end(), rank,
+      [](const SelectedImage& image, uint32_t wanted) { return image.rank < wanted; });
+  return found != images.end() && found->rank == rank;
 }
 
 Result<void> StatisticSource::Begin(const RunState* state, std::span<const FrameId> /*early*/) {
@@ -92,16 +92,16 @@ void StatisticSource::BeginGroup() {
   group_ = std::make_unique<Group>();
   Group& group = *group_;
   const size_t most = plan_.collect.frames_per_pass * frames_.size();
-  std::vector<PlaceRange> places;
+  std::vector<RankRange> ranks;
   for (group.end = next_; group.end < order_.size(); ++group.end) {
-    const uint32_t place = order_[group.end].place;
+    const uint32_t rank = order_[group.end].rank;
     std::vector<size_t> takers;
     for (size_t f = 0; f < frames_.size(); ++f)
-      if (frames_[f].Takes(place)) takers.push_back(f);
+      if (frames_[f].Takes(rank)) takers.push_back(f);
     if (group.end > next_ && group.frames.size() + takers.size() > most) break;
     group.order.push_back(order_[group.end]);
     group.frames.insert(group.frames.end(), takers.begin(), takers.end());
-    places.insert(places.end(), takers.size(), {place, place + 1});
+    ranks.insert(ranks.end(), takers.size(), {rank, rank + 1});
   }
   for (size_t i = 0; i < group.frames.size(); ++i) group.plates.emplace_back(0, 0);
   setup_.pool().ForEach(group.plates.size(),
@@ -109,13 +109,13 @@ void StatisticSource::BeginGroup() {
   std::vector<CollectedFrame> collected;
   for (size_t i = 0; i < group.frames.size(); ++i)
     collected.push_back(
-        {setup_.path().Camera(frames_[group.frames[i]].id), &group.plates[i], places[i]});
+        {setup_.path().Camera(frames_[group.frames[i]].id), &group.plates[i], ranks[i]});
   CollectOptions options;
   options.reading = setup_.film().reading;
   options.batch_image_count = static_cast<int>(plan_.collect.batch_image_count);
   options.plan_bytes = plan_.collect.plan_bytes;
-  options.decision_places = 0;
-  options.place_end = setup_.index().place_end();
+  options.decision_ranks = 0;
+  options.rank_end = setup_.index().rank_end();
   // An LF image that was whole for the first part must be whole for the others.
   options.strict = setup_.work().strict || part_.y_begin > 0;
   options.interrupted = setup_.work().interrupted;
@@ -165,7 +165,7 @@ Result<void> StatisticSource::EndPart() {
 void StatisticSource::LeaveOutBroken() {
   const auto is_broken = [this](const SelectedImage& image) {
     return std::any_of(skipped_.begin(), skipped_.end(),
-                       [&](const SkippedImage& skipped) { return skipped.place == image.place; });
+                       [&](const SkippedImage& skipped) { return skipped.rank == image.rank; });
   };
   std::erase_if(order_, is_broken);
 }
@@ -185,7 +185,7 @@ void StatisticSource::AddTo(RenderReport* totals) const {
 }
 
 FrameProgress StatisticSource::Progress(size_t f) const {
-  return {is_done_ ? setup_.index().place_end() : 0, frames_[f].rays};
+  return {is_done_ ? setup_.index().rank_end() : 0, frames_[f].rays};
 }
 
 void StatisticSource::Release(size_t f) {
@@ -224,7 +224,7 @@ PlateNotes StatisticSource::NotesOf(size_t f) const {
   notes.develop = DevelopOptionsOf(setup_.light_field().encoding);
   notes.develop.adds_opacity = setup_.film().adds_opacity;
   for (const SkippedImage& image : skipped_)
-    if (frame.Takes(image.place)) notes.skipped.push_back(image.name);
+    if (frame.Takes(image.rank)) notes.skipped.push_back(image.name);
   notes.skipped_count = notes.skipped.size();
   return notes;
 }

@@ -28,7 +28,7 @@ struct StatisticPlan {
   size_t frames_per_pass = 1;  // number of frames whose values fit together; 1 if there are parts
 };
 
-// Returns the places of the order that a frame takes, and the frame, for a selection.
+// Returns the ranks of the order that a frame takes, and the frame, for a selection.
 TakingFrame TakingOf(const FilmSetup& setup, FrameId frame);
 
 class StatisticSource final : public FrameSource {
@@ -73,14 +73,14 @@ class StatisticSource final : public FrameSource {
  private:
   struct Frame {
     FrameId id;
-    std::vector<SelectedImage> images;  // LF images that the frame takes, by ascending places
+    std::vector<SelectedImage> images;  // LF images that the frame takes, by ascending ranks
     // Sums and counts of the ranks that the statistic takes.
     SensorPlate plate{0, 0};
     Image<uint32_t> counts;               // number of values of each element
     std::optional<ElementValues> values;  // of the elements of the part
     FrameRays rays;
     bool is_released = false;
-    bool Takes(uint32_t place) const;
+    bool Takes(uint32_t rank) const;
   };
   // LF images of order_ that are collected, each into a plate of its own for each frame.
   struct Group;

@@ -20,8 +20,8 @@ Package SmallPackage() {
   Package package;
   package.choices.has_neighbours = false;
   package.whole = {1, "0123456789abcdef", "fedcba9876543210"};
-  package.places.end = 1;
-  package.places.of_images = {0};
+  package.ranks.end = 1;
+  package.ranks.of_images = {0};
   package.light_field = testing::NoiseField(1);
   package.images = {{0, 1, {0, 0, 1, 1}, 1, 1}};
   package.path.cameras = {testing::NoiseFrames().front()};

@@ -120,7 +120,7 @@ class Preprocessor {
   std::optional<PackageFolder> folder_;  // where packages are written; unset: nothing is written
   std::unique_ptr<LfImageStore> store_;  // tells file sizes, and which pixels a store has kept
   LightFieldIdentity whole_;
-  ImagePlaces places_;
+  ImageRanks ranks_;
   std::optional<ImageIndex> index_;
   // Needs that were computed for the forecast, and that MakePackage() uses again; up to
   // kMostKeptBytes.
@@ -178,12 +178,12 @@ Result<void> Preprocessor::Begin() {
 Result<void> Preprocessor::MakeIndex() {
   const auto start = std::chrono::steady_clock::now();
   const double start_cpu_s = ProcessCpuSeconds();
-  const Result<ImagePlaces> places =
-      PlacesOfFilm(film_.order, film_.seed, light_field_, path_, needs_, pool_);
+  const Result<ImageRanks> ranks =
+      RanksOfFilm(film_.order, film_.seed, light_field_, path_, needs_, pool_);
   LF_RETURN_IF_ERROR(CheckInterrupted());
-  if (!places) return places.error();
-  places_ = *places;
-  index_.emplace(light_field_, places_);
+  if (!ranks) return ranks.error();
+  ranks_ = *ranks;
+  index_.emplace(light_field_, ranks_);
   report_.index_s = SecondsSince(start);
   begin_cpu_s_ += ProcessCpuSeconds() - start_cpu_s;
   LogDebug("order {} of {} LF images by seed {}, and their octree: {:.2f} s", NameOf(film_.order),
@@ -377,7 +377,7 @@ Package Preprocessor::PackageOf(const Section& section, const Gathering& gatheri
   part.encoding.footprint = footprint_;
   part.unit_m = light_field_.unit_m;
   part.depth_range = light_field_.depth_range;
-  package.places.end = places_.end;
+  package.ranks.end = ranks_.end;
   // Index of intrinsics in the package, by their index in the whole light field.
   std::map<uint32_t, uint32_t> intrinsics;
   for (const auto& [id, gathered] : gathering.images()) {
@@ -390,7 +390,7 @@ Package Preprocessor::PackageOf(const Section& section, const Gathering& gatheri
     part.image_names.push_back(light_field_.image_names[id.value]);
     if (!light_field_.mask_names.empty())
       part.mask_names.push_back(light_field_.mask_names[id.value]);
-    package.places.of_images.push_back(places_.of_images[id.value]);
+    package.ranks.of_images.push_back(ranks_.of_images[id.value]);
     PackageImage image;
     image.id = id.value;
     image.rect = gathered.rect;

@@ -71,10 +71,10 @@ class PreprocessTest : public ::testing::Test {
 
 void PreprocessTest::ExpectPackageIsAsGoodAsTheWhole(const Package& package,
                                                      const NeedsOptions& needs) {
-  const ImageIndex whole(field_, options_.film.seed), part(package.light_field, package.places);
+  const ImageIndex whole(field_, options_.film.seed), part(package.light_field, package.ranks);
   EXPECT_EQ(package.whole, IdentityOf(field_));
   for (size_t i = 0; i < package.images.size(); ++i)
-    EXPECT_EQ(package.places.of_images[i], whole.PlaceOf(LfImageId{package.images[i].id}));
+    EXPECT_EQ(package.ranks.of_images[i], whole.RankOf(LfImageId{package.images[i].id}));
   std::map<uint32_t, PackageImage> images;  // by id in the whole light field
   for (const PackageFrame& frame : package.frames) {
     const RenderCamera& camera = film_.Camera(frame.id);
@@ -174,7 +174,7 @@ TEST_F(PreprocessTest, PackagesHaveWhatAShutterNeeds) {
       for (const PackageForecast& forecast : Run().packages) {
         const Package package = Read(forecast);
         ASSERT_EQ(package.path.instants.size(), 30u);
-        const ImageIndex part(package.light_field, package.places);
+        const ImageIndex part(package.light_field, package.ranks);
         for (const PackageFrame& frame : package.frames) {
           const FrameNeeds wanted = NeedsOf(whole, film_, frame.id, needs, pool_);
           const FrameNeeds found = NeedsOf(part, package.path, frame.id, needs, pool_, &package);
@@ -227,7 +227,7 @@ TEST_F(PreprocessTest, PackagesHaveWhatTheGuardNeeds) {
         EXPECT_EQ(package.choices.has_neighbours, needs.HasNeighbours());
         ExpectPackageIsAsGoodAsTheWhole(package, needs);
         rays[guard] += forecast.ray_count;
-        const ImageIndex part(package.light_field, package.places);
+        const ImageIndex part(package.light_field, package.ranks);
         for (const PackageFrame& frame : package.frames) {
           if (!needs.HasNeighbours()) continue;
           const FrameLens lens(whole.recorded(), film_.Camera(frame.id), weights, needs.select,
@@ -332,19 +332,19 @@ TEST_F(PreprocessTest, OrdersAreOfTheWholeFilm) {
     options_.film.order = order;
     options_.overwrite = true;
     const PreprocessReport report = Run();
-    std::map<uint32_t, uint32_t> places;  // [LF image]
+    std::map<uint32_t, uint32_t> ranks;  // [LF image]
     for (const PackageForecast& forecast : report.packages) {
       const Package package = Read(forecast);
       EXPECT_EQ(package.choices.order, order);
       for (size_t i = 0; i < package.images.size(); ++i) {
         const auto [known, is_new] =
-            places.emplace(package.images[i].id, package.places.of_images[i]);
-        EXPECT_EQ(known->second, package.places.of_images[i]);
+            ranks.emplace(package.images[i].id, package.ranks.of_images[i]);
+        EXPECT_EQ(known->second, package.ranks.of_images[i]);
       }
     }
     std::set<uint32_t> distinct;
-    for (const auto& [id, place] : places) distinct.insert(place);
-    EXPECT_EQ(distinct.size(), places.size());
+    for (const auto& [id, rank] : ranks) distinct.insert(rank);
+    EXPECT_EQ(distinct.size(), ranks.size());
   }
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const PlateEntries kEntries = {{"estimator", "nearest"}, {"places_done", "128"}, {"empty", ""}};
+const PlateEntries kEntries = {{"estimator", "nearest"}, {"ranks_done", "128"}, {"empty", ""}};
 
 class PlateFile : public ::testing::Test {
  protected:
@@ -78,7 +78,7 @@ TEST_F(PlateFile, GivesBackEverySumAndCount) {
     Result<PlateReader> reader = PlateReader::Open(path);
     ASSERT_TRUE(reader) << reader.error().message;
     EXPECT_EQ(reader->entries(), kEntries);
-    EXPECT_EQ(*FindEntry(reader->entries(), "places_done"), "128");
+    EXPECT_EQ(*FindEntry(reader->entries(), "ranks_done"), "128");
     EXPECT_EQ(FindEntry(reader->entries(), "places"), nullptr);
     ASSERT_EQ(reader->width(), width);
     ASSERT_EQ(reader->height(), height);
@@ -221,7 +221,7 @@ TEST_F(PlateFile, EntriesOfAnotherFormAreRefused) {
   for (const auto& [from, to] : {std::pair("estimator: ", "Estimator: "),
                                  {"mpty: ", "mpty  "},
                                  {"empty: ", "e\npty: "},
-                                 {"places_done: 128", "estimator: 12345"}}) {
+                                 {"ranks_done: 128", "estimator: 12345"}}) {
     std::string other = bytes;
     const size_t at = other.find(from);
     ASSERT_NE(at, std::string::npos);

@@ -37,7 +37,7 @@ struct Loading {
 struct Batch {
   size_t begin = 0;
   size_t end = 0;
-  uint32_t place_end = 0;  // when the batch is done, all places before this one are done
+  uint32_t rank_end = 0;  // when the batch is done, all ranks before this one are done
   // Indices of the frames that take the batch. Empty: all; or none, if only the consumer needs it.
   std::vector<size_t> frames;
   std::vector<Loading> loading;
@@ -60,7 +60,7 @@ class FrameCollector::State {
         frames_(std::move(frames)),
         collector_(light_field, frames_, options.reading, options.back_end, options.plan_bytes,
                    options.whole_images, pool) {
-    for (CollectedFrame& frame : frames_) frame.progress.places_done = frame.places.begin;
+    for (CollectedFrame& frame : frames_) frame.progress.ranks_done = frame.ranks.begin;
     LF_CHECK(options.batch_image_count >= 1);
     images_done_ = announced_ = FirstWanted(0);
     most_values_ = MostValues();
@@ -80,14 +80,14 @@ class FrameCollector::State {
             fmt::format("interrupted after {} of {} LF images", images_done_, order_.size())};
   }
   static bool Takes(const CollectedFrame& frame) {
-    return !frame.is_stopped && frame.progress.places_done < frame.places.end;
+    return !frame.is_stopped && frame.progress.ranks_done < frame.ranks.end;
   }
-  // True if options_.consumer still needs LF images at places before place_end.
-  bool ConsumerWants(uint32_t place_end) const {
-    return options_.consumer != nullptr && options_.consumer->places_done() < place_end;
+  // True if options_.consumer still needs LF images at ranks before rank_end.
+  bool ConsumerWants(uint32_t rank_end) const {
+    return options_.consumer != nullptr && options_.consumer->ranks_done() < rank_end;
   }
-  uint32_t PlaceEnd() const {
-    return options_.place_end > 0 ? options_.place_end : static_cast<uint32_t>(light_field_.size());
+  uint32_t RankEnd() const {
+    return options_.rank_end > 0 ? options_.rank_end : static_cast<uint32_t>(light_field_.size());
   }
   size_t FirstWanted(size_t from) const;
   Batch BatchFrom(size_t from) const;
@@ -127,7 +127,7 @@ Result<bool> FrameCollector::State::Step() {
   std::vector<BatchFrame> takers = FramesOf(batch_);
   // Skips batches that no frame needs any more, because frames may have been stopped since the
   // batch was planned.
-  while (takers.empty() && !ConsumerWants(batch_.place_end)) {
+  while (takers.empty() && !ConsumerWants(batch_.rank_end)) {
     if (batch_.end > batch_.begin) images_done_ = batch_.end;
     batch_ = next_.end > next_.begin ? std::move(next_) : BatchFrom(images_done_);
     next_ = {};
@@ -148,14 +148,14 @@ Result<bool> FrameCollector::State::Step() {
       AnnounceUpTo(BatchFrom(next_.end).end);
   };
   collector_.Add(batch_.images, takers, {1 + next_.loading.size(), load_or_announce},
-                 ConsumerWants(batch_.place_end), options_.interrupted);
+                 ConsumerWants(batch_.rank_end), options_.interrupted);
 
   bool all_done = true;
   for (const BatchFrame& taker : takers) {
     all_done = all_done && taker.is_done;
     if (!taker.is_done) continue;
     CollectedFrame& frame = frames_[taker.frame];
-    frame.progress.places_done = std::min(batch_.place_end, frame.places.end);
+    frame.progress.ranks_done = std::min(batch_.rank_end, frame.ranks.end);
     frame.progress.rays += taker.rays;
   }
   times_.load_cpu_s = static_cast<double>(load_cpu_ns_) * 1e-9;
@@ -163,7 +163,7 @@ Result<bool> FrameCollector::State::Step() {
   times_.collect_cpu_s = collector_.cpu_seconds();
   times_.wall_s += SecondsSince(start);
   if (!all_done || (takers.empty() && IsInterrupted())) return Interruption();
-  if (ConsumerWants(batch_.place_end)) options_.consumer->Take(batch_.images, batch_.place_end);
+  if (ConsumerWants(batch_.rank_end)) options_.consumer->Take(batch_.images, batch_.rank_end);
   images_done_ = batch_.end;
   for (BatchImage& image : batch_.images) {
     image.pixels.opacity = std::move(image.opacity.radiance);
@@ -176,14 +176,14 @@ Result<bool> FrameCollector::State::Step() {
 // Returns the index in order_ of the first LF image, at or after index `from`, that a frame or the
 // consumer still needs; order_.size() if there is none.
 size_t FrameCollector::State::FirstWanted(size_t from) const {
-  uint32_t place = UINT32_MAX;
+  uint32_t rank = UINT32_MAX;
   for (const CollectedFrame& frame : frames_)
-    if (Takes(frame)) place = std::min(place, frame.progress.places_done);
-  if (ConsumerWants(PlaceEnd())) place = std::min(place, options_.consumer->places_done());
-  if (place == UINT32_MAX) return order_.size();
+    if (Takes(frame)) rank = std::min(rank, frame.progress.ranks_done);
+  if (ConsumerWants(RankEnd())) rank = std::min(rank, options_.consumer->ranks_done());
+  if (rank == UINT32_MAX) return order_.size();
   const auto first = std::lower_bound(
-      order_.begin(), order_.end(), place,
-      [](const SelectedImage& image, uint32_t least) { return image.place < least; });
+      order_.begin(), order_.end(), rank,
+      [](const SelectedImage& image, uint32_t least) { return image.rank < least; });
   return std::max(from, static_cast<size_t>(first - order_.begin()));
 }
 
@@ -191,8 +191,8 @@ Batch FrameCollector::State::BatchFrom(size_t from) const {
   Batch batch;
   batch.begin = batch.end = FirstWanted(from);
   if (batch.begin == order_.size()) return batch;
-  const uint32_t cut = options_.decision_places;
-  const uint32_t first = order_[batch.begin].place;
+  const uint32_t cut = options_.decision_ranks;
+  const uint32_t first = order_[batch.begin].rank;
   uint32_t decision = cut == 0 ? UINT32_MAX : (first / cut + 1) * cut;
   if (options_.cuts_for_noise) decision = std::min(decision, NoiseDecisionAfter(first));
   const size_t most = batch.begin + static_cast<size_t>(options_.batch_image_count);
@@ -203,11 +203,11 @@ Batch FrameCollector::State::BatchFrom(size_t from) const {
     frame_rays += image.ray_count / std::max(1U, image.frame_count);
     const bool is_long =
         rays > options_.batch_ray_count || frame_rays > options_.batch_frame_ray_count;
-    if (image.place >= decision || (is_long && batch.end > batch.begin)) break;
+    if (image.rank >= decision || (is_long && batch.end > batch.begin)) break;
     batch.loading.push_back({.index = batch.end});
   }
-  batch.place_end =
-      batch.end < order_.size() ? std::min(decision, order_[batch.end].place) : PlaceEnd();
+  batch.rank_end =
+      batch.end < order_.size() ? std::min(decision, order_[batch.end].rank) : RankEnd();
   for (const BatchFrame& taker : FramesOf(batch)) batch.frames.push_back(taker.frame);
   if (batch.frames.size() == frames_.size()) batch.frames.clear();
   return batch;
@@ -218,9 +218,9 @@ std::vector<BatchFrame> FrameCollector::State::FramesOf(const Batch& batch) cons
   std::vector<BatchFrame> takers;
   for (size_t f = 0; f < frames_.size(); ++f) {
     const CollectedFrame& frame = frames_[f];
-    const uint32_t done = frame.progress.places_done;
-    if (Takes(frame) && done < batch.place_end)
-      takers.push_back({f, {done, frame.places.end}, false, {}});
+    const uint32_t done = frame.progress.ranks_done;
+    if (Takes(frame) && done < batch.rank_end)
+      takers.push_back({f, {done, frame.ranks.end}, false, {}});
   }
   return takers;
 }
@@ -234,7 +234,7 @@ std::vector<size_t> FrameCollector::State::TakersOf(const Batch& batch,
                                                     const SelectedImage& image) const {
   std::vector<size_t> frames;
   const auto add = [&](size_t frame) {
-    if (frames_[frame].places.Holds(image.place)) frames.push_back(frame);
+    if (frames_[frame].ranks.Holds(image.rank)) frames.push_back(frame);
   };
   if (batch.frames.empty())
     for (size_t frame = 0; frame < frames_.size(); ++frame) add(frame);
@@ -255,8 +255,8 @@ void FrameCollector::State::Load(const Batch& batch, Loading* loading) {
   const ThreadCpuTimer timer;
   const SelectedImage& selected = order_[loading->index];
   PixelRect rect = RectOf(batch, selected);
-  const bool is_consumed = ConsumerWants(selected.place + 1);
-  if (is_consumed) rect = Bounds(rect, options_.consumer->RectOf(selected.id, selected.place));
+  const bool is_consumed = ConsumerWants(selected.rank + 1);
+  if (is_consumed) rect = Bounds(rect, options_.consumer->RectOf(selected.id, selected.rank));
   if (!is_consumed && !rect.empty())
     loading->filtered_by = collector_.OnlyPrefilterOf(selected.id, TakersOf(batch, selected));
   // Rows that were just loaded are still in the caches, which makes filtering faster.
@@ -328,7 +328,7 @@ Result<void> FrameCollector::State::FinishLoading(Batch* batch) {
     if (*loading.pixels) {
       whole_ = image.id;
       batch->images.push_back({.id = image.id,
-                               .place = image.place,
+                               .rank = image.rank,
                                .pixels = **std::move(loading.pixels),
                                .opacity = std::move(loading.opacity),
                                .depths = std::move(loading.depths),
@@ -358,7 +358,7 @@ void FrameCollector::State::Skip(const SelectedImage& image, const Error& error)
   if (skipped_.size() < kTold) LogWarning("an LF image is left out: {}", error.message);
   if (skipped_.size() == kTold)
     LogWarning("more LF images are left out; the report at the end lists all of them");
-  skipped_.push_back({light_field_.image_names[image.id.value], error.message, image.place});
+  skipped_.push_back({light_field_.image_names[image.id.value], error.message, image.rank});
 }
 
 FrameCollector::FrameCollector(const LightField& light_field, const LfImageStore& store,

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Collects the rays of many LF images into the plates of many frames. Each LF image is read once,
-// by ascending places. The place of an LF image is its rank in the order (doc/terminology.md). All
-// CPU cores work together, even if there is only one frame (doc/design.md, "Work is cut by
-// destination").
+// by ascending ranks in the order (selection/image_order.h). All CPU cores work together, even if
+// there is only one frame (doc/design.md, "Work is cut by destination").
 #pragma once
 
 #include <atomic>
@@ -26,10 +25,10 @@
 
 namespace lf {
 
-// The rule "samples>=N" (sample_rule.h) may stop a frame only at places that are multiples of this
-// number (doc/ray.md, "Same bits"). The rule "noise<=X" may stop it at the places of
+// The rule "samples>=N" (sample_rule.h) may stop a frame only at ranks that are multiples of this
+// number (doc/ray.md, "Same bits"). The rule "noise<=X" may stop it at the ranks of
 // NoiseDecisionAfter() (noise_rule.h).
-inline constexpr uint32_t kDecisionPlaces = 64;
+inline constexpr uint32_t kDecisionRanks = 64;
 
 struct CollectOptions {
   RayReading reading;
@@ -46,19 +45,19 @@ struct CollectOptions {
   uint64_t batch_ray_count = 10'000'000'000;
   uint64_t batch_frame_ray_count = 500'000'000;
   size_t plan_bytes = size_t{64} << 20;  // memory for the plans (PlanBytes()) of a batch's rays
-  // No batch extends beyond a place that is a multiple of this number, so that stop rules may be
-  // applied there. Must be 0 or a multiple of kDecisionPlaces. 0: batches do not end for this
+  // No batch extends beyond a rank that is a multiple of this number, so that stop rules may be
+  // applied there. Must be 0 or a multiple of kDecisionRanks. 0: batches do not end for this
   // reason.
-  uint32_t decision_places = kDecisionPlaces;
-  // True: batches also end at all places of NoiseDecisionAfter() (noise_rule.h).
+  uint32_t decision_ranks = kDecisionRanks;
+  // True: batches also end at all ranks of NoiseDecisionAfter() (noise_rule.h).
   bool cuts_for_noise = false;
-  // Receives the LF images from its places_done() on, in addition to the frames. The plates are the
+  // Receives the LF images from its ranks_done() on, in addition to the frames. The plates are the
   // same with and without a consumer. Null: there is none.
   ImageConsumer* consumer = nullptr;
   bool whole_images = false;  // must be equal to SelectOptions::whole_images of the selection
-  // End (exclusive) of all places in the order. 0: the number of LF images in the light field. Must
-  // be set for a package, because its places are those of the whole light field.
-  uint32_t place_end = 0;
+  // End (exclusive) of all ranks in the order. 0: the number of LF images in the light field. Must
+  // be set for a package, because its ranks are those of the whole light field.
+  uint32_t rank_end = 0;
   bool strict = false;  // true: a broken LF image is an error; false: it is skipped
   // Once it is true, Step() returns kInterrupted, unless no work is left. Null: nothing interrupts.
   const std::atomic<bool>* interrupted = nullptr;
@@ -80,7 +79,7 @@ struct CollectTimes {
 // broken leaves the plates as if the light field did not contain it.
 class FrameCollector {
  public:
-  // order   LF images that the frames take, by ascending places, each with the bounds of the pixels
+  // order   LF images that the frames take, by ascending ranks, each with the bounds of the pixels
   //         that the frames need: the result of SelectImages(), where TakingFrame::takes must be
   //         true exactly for the LF images to which CollectedFrame::weights gives a weight above 0.
   //         Also those that only options.consumer needs, with an empty `rect`
@@ -93,8 +92,8 @@ class FrameCollector {
   FrameCollector(const FrameCollector&) = delete;
   FrameCollector& operator=(const FrameCollector&) = delete;
 
-  // Collects the next batch into every frame that has not reached its places.end and is not
-  // stopped. Returns false if nothing was left to do. If frames start at different places, those
+  // Collects the next batch into every frame that has not reached its ranks.end and is not
+  // stopped. Returns false if nothing was left to do. If frames start at different ranks, those
   // that are behind catch up first.
   // kInterrupted: *options.interrupted became true. Every frame is consistent: it has either all LF
   // images of the batch or none. Step() may be called again to continue.
@@ -109,7 +108,7 @@ class FrameCollector {
 
   // The constructor's `frames`, with their progress.
   std::span<const CollectedFrame> frames() const;
-  // Broken LF images that this object skipped, by ascending places.
+  // Broken LF images that this object skipped, by ascending ranks.
   std::span<const SkippedImage> skipped() const;
   // Number of LF images at the beginning of `order` that no frame and no consumer needs any more.
   size_t images_done() const;

@@ -170,7 +170,7 @@ std::span<BatchFrame> BatchCollector::FramesThatMayTake(const std::vector<BatchI
                                                         std::span<BatchFrame> frames) {
   ForEachTimed(frames.size(), [&](size_t f) {
     frames[f].is_done = std::none_of(batch.begin(), batch.end(), [&](const BatchImage& image) {
-      return frames[f].places.Holds(image.place) &&
+      return frames[f].ranks.Holds(image.rank) &&
              (whole_images_ || !PlainlyMisses(image, frames[f].frame));
     });
   });
@@ -211,7 +211,7 @@ void BatchCollector::AddToFrames(std::vector<BatchImage>& batch, std::span<Batch
     Contribution& contribution = contributions_[i];
     contribution.rect = {};
     contribution.accepted_count = 0;
-    if (!taker.places.Holds(image.place)) return;
+    if (!taker.ranks.Holds(image.rank)) return;
     PlanContribution(image, ExposureOf(taker.frame, exposure), &contribution);
     if (!is_guarded() || exposure > 0 || contribution.rect.empty()) return;
     contribution.defocus = DefocusIn(taker.frame, image, TakeSpareDefocus());
@@ -355,7 +355,7 @@ void BatchCollector::AddByReference(const std::vector<BatchImage>& batch, BatchF
   };
   tally.Start(total_of);
   for (const BatchImage& image : batch) {
-    if (!frame->places.Holds(image.place)) continue;
+    if (!frame->ranks.Holds(image.rank)) continue;
     if (is_guarded() && AddChannelsByReference(image, image.Pixels(), ExposureOf(frame->frame, 1),
                                                3, SensorPlate::kAllRaysChannel, &plate) > 0)
       frame->rays.virtual_count += IsVirtual(image.id) ? 1 : 0;

@@ -35,7 +35,7 @@ namespace lf {
 
 struct BatchImage {
   LfImageId id;
-  uint32_t place = 0;  // rank of the LF image in the order
+  uint32_t rank = 0;  // rank of the LF image in the order
   LfPixels pixels;
   // opacity of these pixels (LfPixels::TakeOpacity()); only used by plates with opacity
   LfPixels opacity = {};
@@ -59,11 +59,11 @@ struct BatchImage {
   const LfPixels& Opacity() const { return shared_pixels ? *shared_opacity : opacity; }
 };
 
-// A frame that takes those LF images of a batch whose places are in `places`.
+// A frame that takes those LF images of a batch whose ranks are in `ranks`.
 // BatchCollector::Add() sets `is_done` and `rays`.
 struct BatchFrame {
   size_t frame = 0;  // index in the frames of the BatchCollector
-  PlaceRange places;
+  RankRange ranks;
   // true: the plate has the rays of all these LF images; false: it has the rays of none of them
   bool is_done = false;
   FrameRays rays;  // counts of the rays that Add() tested and added; zeros if is_done is false
@@ -89,7 +89,7 @@ class FilteredImages;
 
 class BatchCollector {
  public:
-  // frames        must outlive the object; their `places` are not used, because BatchFrame has its
+  // frames        must outlive the object; their `ranks` are not used, because BatchFrame has its
   //               own
   // plan_bytes    memory for the plans of frames that are planned together; exceeded if one frame
   //               needs more

@@ -24,9 +24,9 @@ namespace lf {
 using ImageWeights = std::function<RayWeights(LfImageId id)>;
 
 // Progress of a frame. Its plate has the rays of exactly those LF images that the frame takes and
-// whose places are below places_done. Broken LF images count as done.
+// whose ranks are below ranks_done. Broken LF images count as done.
 struct FrameProgress {
-  uint32_t places_done = 0;
+  uint32_t ranks_done = 0;
   FrameRays rays;  // counts of the rays that this FrameCollector tested and added
 };
 
@@ -49,9 +49,9 @@ struct CollectedInstant {
 struct CollectedFrame {
   RenderCamera camera;
   SensorPlate* plate = nullptr;  // receives the rays; must not be null
-  // The frame takes LF images at these places of the order. The plate must already have the rays of
-  // the LF images that the frame takes at places before places.begin.
-  PlaceRange places = {};
+  // The frame takes LF images at these ranks of the order. The plate must already have the rays of
+  // the LF images that the frame takes at ranks before ranks.begin.
+  RankRange ranks = {};
   ImageWeights weights = {};
   // Must be set in all frames or in none. If it is set, `camera` and `weights` are those of
   // recorded LF images alone, `weights` gives virtual LF images the weight 0, and progress.rays

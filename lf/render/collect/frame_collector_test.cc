@@ -14,7 +14,7 @@ namespace lf {
 namespace {
 
 // LF cameras per side of the grid. More than 128 LF images contribute, so that a stop rule would be
-// applied twice: at places 64 and 128.
+// applied twice: at ranks 64 and 128.
 constexpr uint32_t kSide = 14;
 
 // Returns a reading that filters LF images before it interpolates between their pixels.
@@ -39,7 +39,7 @@ struct Job {
   testing::NoiseStore store;
   CollectOptions options;
   std::vector<SensorPlate> plates = EmptyPlates();
-  std::vector<PlaceRange> places = std::vector<PlaceRange>(frames.size());
+  std::vector<RankRange> ranks = std::vector<RankRange>(frames.size());
 
   std::vector<SensorPlate> EmptyPlates() const {
     std::vector<SensorPlate> empty;
@@ -48,17 +48,17 @@ struct Job {
   }
   FrameCollector Collector() {
     std::vector<CollectedFrame> collected = FramesOf(frames, plates);
-    for (size_t f = 0; f < collected.size(); ++f) collected[f].places = places[f];
+    for (size_t f = 0; f < collected.size(); ++f) collected[f].ranks = ranks[f];
     return FrameCollector(field, store, std::move(collected), order, options, pool);
   }
 };
 
-// Collects frame f alone, from places [0, end) of the order.
+// Collects frame f alone, from ranks [0, end) of the order.
 SensorPlate PlateOf(Job& job, size_t f, uint32_t end, FrameRays* rays) {
   std::vector<SensorPlate> plates;
   plates.emplace_back(80, 60);
   std::vector<SelectedImage> images = job.order;
-  std::erase_if(images, [&](const SelectedImage& image) { return image.place >= end; });
+  std::erase_if(images, [&](const SelectedImage& image) { return image.rank >= end; });
   CollectOptions options = job.options;
   options.interrupted = nullptr;
   const auto on_load = std::exchange(job.store.on_load, nullptr);
@@ -74,14 +74,14 @@ SensorPlate PlateOf(Job& job, size_t f, uint32_t end, FrameRays* rays) {
 void ExpectPlates(Job& job, std::span<const CollectedFrame> frames) {
   for (size_t f = 0; f < job.frames.size(); ++f) {
     FrameRays rays;
-    EXPECT_EQ(job.plates[f], PlateOf(job, f, frames[f].progress.places_done, &rays)) << f;
+    EXPECT_EQ(job.plates[f], PlateOf(job, f, frames[f].progress.ranks_done, &rays)) << f;
   }
 }
 
 void ExpectRays(Job& job, std::span<const CollectedFrame> frames) {
   for (size_t f = 0; f < job.frames.size(); ++f) {
     FrameRays rays;
-    PlateOf(job, f, frames[f].progress.places_done, &rays);
+    PlateOf(job, f, frames[f].progress.ranks_done, &rays);
     EXPECT_EQ(frames[f].progress.rays.image_count, rays.image_count);
     EXPECT_EQ(frames[f].progress.rays.tested_count, rays.tested_count);
     EXPECT_EQ(frames[f].progress.rays.accepted_count, rays.accepted_count);
@@ -96,14 +96,14 @@ TEST(FrameCollector, NoBatchGoesAcrossADecision) {
     std::vector<uint32_t> ends;
     size_t images_done = 0;
     while (*collector.Step()) {
-      ends.push_back(collector.frames()[0].progress.places_done);
+      ends.push_back(collector.frames()[0].progress.ranks_done);
       for (const CollectedFrame& frame : collector.frames())
-        EXPECT_EQ(frame.progress.places_done, ends.back());
+        EXPECT_EQ(frame.progress.ranks_done, ends.back());
       EXPECT_LE(collector.images_done() - images_done, static_cast<size_t>(batch_image_count));
       images_done = collector.images_done();
       const size_t images_before =
           std::count_if(job.order.begin(), job.order.end(),
-                        [&](const SelectedImage& image) { return image.place < ends.back(); });
+                        [&](const SelectedImage& image) { return image.rank < ends.back(); });
       EXPECT_EQ(images_done, images_before);
     }
     for (const uint32_t decision : {64u, 128u, kSide * kSide})
@@ -116,7 +116,7 @@ TEST(FrameCollector, NoBatchGoesAcrossADecision) {
 TEST(FrameCollector, WithoutRulesBatchesAreNotCut) {
   Job job;
   job.options.batch_image_count = 100;
-  job.options.decision_places = 0;
+  job.options.decision_ranks = 0;
   FrameCollector collector = job.Collector();
   EXPECT_TRUE(*collector.Step());
   EXPECT_EQ(collector.images_done(), 100u);
@@ -125,11 +125,11 @@ TEST(FrameCollector, WithoutRulesBatchesAreNotCut) {
 TEST(FrameCollector, FramesThatStartApartCatchUp) {
   Job job;
   job.options.batch_image_count = 10;
-  const uint32_t places[] = {37, 0, 64};
+  const uint32_t ranks[] = {37, 0, 64};
   for (size_t f = 0; f < 3; ++f) {
-    job.places[f].begin = places[f];
+    job.ranks[f].begin = ranks[f];
     FrameRays rays;
-    job.plates[f] = PlateOf(job, f, places[f], &rays);
+    job.plates[f] = PlateOf(job, f, ranks[f], &rays);
   }
   std::atomic<size_t> load_count = 0;
   job.store.on_load = [&](LfImageId, const PixelRect&) { ++load_count; };
@@ -144,26 +144,26 @@ TEST(FrameCollector, FramesThatStartApartCatchUp) {
 TEST(FrameCollector, FramesThatEndApart) {
   Job job;
   const uint32_t ends[] = {37, UINT32_MAX, 64};
-  for (size_t f = 0; f < 3; ++f) job.places[f].end = ends[f];
+  for (size_t f = 0; f < 3; ++f) job.ranks[f].end = ends[f];
   FrameCollector collector = job.Collector();
   while (*collector.Step()) continue;
-  EXPECT_EQ(collector.frames()[0].progress.places_done, 37u);
-  EXPECT_EQ(collector.frames()[1].progress.places_done, kSide * kSide);
-  EXPECT_EQ(collector.frames()[2].progress.places_done, 64u);
+  EXPECT_EQ(collector.frames()[0].progress.ranks_done, 37u);
+  EXPECT_EQ(collector.frames()[1].progress.ranks_done, kSide * kSide);
+  EXPECT_EQ(collector.frames()[2].progress.ranks_done, 64u);
   ExpectPlates(job, collector.frames());
   ExpectRays(job, collector.frames());
 }
 
 TEST(FrameCollector, WhatNoFrameWantsIsNotRead) {
   Job job;
-  for (PlaceRange& range : job.places) range.begin = 100;
+  for (RankRange& range : job.ranks) range.begin = 100;
   std::atomic<int> load_count = 0;
   job.store.on_load = [&](LfImageId, const PixelRect&) { ++load_count; };
   FrameCollector collector = job.Collector();
   while (*collector.Step()) continue;
   EXPECT_EQ(load_count,
             std::count_if(job.order.begin(), job.order.end(),
-                          [](const SelectedImage& image) { return image.place >= 100; }));
+                          [](const SelectedImage& image) { return image.rank >= 100; }));
 }
 
 TEST(FrameCollector, LongBatchesAreCut) {
@@ -200,13 +200,13 @@ TEST(FrameCollector, ImagesAreAnnouncedOnceAndAhead) {
   EXPECT_EQ(job.store.announced.size(), 30u);
   while (*collector.Step()) continue;
   ASSERT_EQ(job.store.announced.size(), job.order.size());
-  for (size_t place = 0; place < job.order.size(); ++place)
-    EXPECT_EQ(job.store.announced[place], job.order[place].id.value);
+  for (size_t rank = 0; rank < job.order.size(); ++rank)
+    EXPECT_EQ(job.store.announced[rank], job.order[rank].id.value);
 }
 
 TEST(FrameCollector, OnlyWhatFramesStillNeedIsDecoded) {
   Job job;
-  for (const size_t f : {size_t{0}, size_t{2}}) job.places[f].begin = kSide * kSide;
+  for (const size_t f : {size_t{0}, size_t{2}}) job.ranks[f].begin = kSide * kSide;
   job.store.on_load = [&](LfImageId id, const PixelRect& rect) {
     EXPECT_EQ(rect, ContributingRect(job.field.Camera(id), job.frames[1]));
   };
@@ -223,8 +223,8 @@ TEST(FrameCollector, AStoppedFrameTakesNoMore) {
   EXPECT_TRUE(*collector.Step());
   collector.Stop(1);
   EXPECT_TRUE(*collector.Step());
-  EXPECT_EQ(collector.frames()[1].progress.places_done, 64u);
-  EXPECT_EQ(collector.frames()[2].progress.places_done, 128u);
+  EXPECT_EQ(collector.frames()[1].progress.ranks_done, 64u);
+  EXPECT_EQ(collector.frames()[2].progress.ranks_done, 128u);
   collector.Stop(0);
   collector.Stop(2);
   EXPECT_FALSE(*collector.Step());
@@ -260,8 +260,7 @@ void ExpectConsistentIfInterrupted(const RayReading& reading) {
       while (*collector.Step()) continue;
       ExpectRays(job, collector.frames());
     } else {
-      for (size_t f = 0; f < 3; ++f)
-        job.places[f].begin = collector.frames()[f].progress.places_done;
+      for (size_t f = 0; f < 3; ++f) job.ranks[f].begin = collector.frames()[f].progress.ranks_done;
       FrameCollector another = job.Collector();
       while (*another.Step()) continue;
       for (size_t f = 0; f < 3; ++f)
@@ -288,8 +287,8 @@ TEST(FrameCollector, BrokenImagesArePlaces) {
   FrameCollector collector = job.Collector();
   while (*collector.Step()) continue;
   ASSERT_EQ(collector.skipped().size(), 2u);
-  EXPECT_EQ(collector.skipped()[0].place, job.order[5].place);
-  EXPECT_EQ(collector.skipped()[1].place, job.order[70].place);
+  EXPECT_EQ(collector.skipped()[0].rank, job.order[5].rank);
+  EXPECT_EQ(collector.skipped()[1].rank, job.order[70].rank);
 }
 
 TEST(FrameCollector, ALightFieldThatVanishesIsNotSkipped) {
@@ -314,7 +313,7 @@ TEST(FrameCollector, ALightFieldThatVanishesIsNotSkipped) {
   job.store.broken.clear();
   job.store.is_gone = false;
   ExpectPlates(job, collector.frames());
-  for (size_t f = 0; f < 3; ++f) job.places[f].begin = collector.frames()[f].progress.places_done;
+  for (size_t f = 0; f < 3; ++f) job.ranks[f].begin = collector.frames()[f].progress.ranks_done;
   FrameCollector another = job.Collector();
   while (*another.Step()) continue;
   Job whole;

@@ -30,7 +30,7 @@ struct FrameRays {
 struct SkippedImage {
   std::string name;    // name in LightField::image_names
   std::string reason;  // says why it was skipped, for messages
-  uint32_t place = 0;  // rank of the LF image in the order
+  uint32_t rank = 0;   // rank of the LF image in the order
 };
 
 // How many rays the elements of a frame have. MeasureSamples() (sample_rule.h) measures it.

@@ -8,12 +8,12 @@
 
 namespace lf {
 
-uint32_t NoiseDecisionAfter(uint32_t place) {
+uint32_t NoiseDecisionAfter(uint32_t rank) {
   constexpr uint32_t kFirst = 16;
   constexpr int kPerDoublingBits = 3;  // eight decisions from a power of two to the next
-  if (place < kFirst) return kFirst;
-  const int step_bits = std::bit_width(place) - 1 - kPerDoublingBits;
-  const uint64_t next = ((uint64_t{place} >> step_bits) + 1) << step_bits;
+  if (rank < kFirst) return kFirst;
+  const int step_bits = std::bit_width(rank) - 1 - kPerDoublingBits;
+  const uint64_t next = ((uint64_t{rank} >> step_bits) + 1) << step_bits;
   return static_cast<uint32_t>(std::min<uint64_t>(next, UINT32_MAX));
 }
 

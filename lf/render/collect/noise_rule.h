@@ -21,14 +21,14 @@ namespace lf {
 // One in this many of the measured reachable elements, rounded down, may be noisier than the frame.
 inline constexpr size_t kNoisierOneIn = 10;
 
-// Returns the first place of the order of LF images, after `place`, at which noise is measured: 16,
-// 18, ..., 32, 36, ..., 64, 72, ...: eight places for each doubling. From one of these places to
+// Returns the first rank of the order of LF images, after `rank`, at which noise is measured: 16,
+// 18, ..., 32, 36, ..., 64, 72, ...: eight ranks for each doubling. From one of these ranks to
 // the next, a frame gets about an eighth more LF images at most, whatever share of the light field
 // it takes. When it stops, it therefore has about 6 % less noise, at most, than at the previous
-// place, where the noise was still too high. For a million LF images, noise is measured at most 130
-// times. Up to 1024, the places include all multiples of 64; above, all multiples of a larger power
+// rank, where the noise was still too high. For a million LF images, noise is measured at most 130
+// times. Up to 1024, the ranks include all multiples of 64; above, all multiples of a larger power
 // of two.
-uint32_t NoiseDecisionAfter(uint32_t place);
+uint32_t NoiseDecisionAfter(uint32_t rank);
 
 // Returns the noise of a frame in units of the rays' values v: divide by RadianceEncoding::Scale()
 // to get radiance. Infinity if more than a tenth of the measured reachable elements have fewer than

@@ -20,17 +20,17 @@ TEST(NoiseRule, IsAskedEightTimesForEachDoubling) {
   EXPECT_EQ(NoiseDecisionAfter(700), 704u);
   EXPECT_EQ(NoiseDecisionAfter(UINT32_MAX), UINT32_MAX);
   uint32_t count = 0;
-  for (uint32_t place = 0; place < 1'000'000; ++count) {
-    const uint32_t next = NoiseDecisionAfter(place);
-    ASSERT_GT(next, place);
-    if (place >= 16) {
-      EXPECT_LE(next - place, place / 8);
+  for (uint32_t rank = 0; rank < 1'000'000; ++count) {
+    const uint32_t next = NoiseDecisionAfter(rank);
+    ASSERT_GT(next, rank);
+    if (rank >= 16) {
+      EXPECT_LE(next - rank, rank / 8);
     }
-    // Rebinned rays are chosen anew at the places 64, 256, 1024, ...: no batch may extend beyond
+    // Rebinned rays are chosen anew at the ranks 64, 256, 1024, ...: no batch may extend beyond
     // one of them.
     for (uint32_t phase = 64; phase < 1'000'000; phase *= 4)
-      EXPECT_FALSE(place < phase && phase < next) << phase;
-    place = next;
+      EXPECT_FALSE(rank < phase && phase < next) << phase;
+    rank = next;
   }
   EXPECT_LT(count, 130u);
 }

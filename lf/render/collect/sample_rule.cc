@@ -63,10 +63,10 @@ size_t MayLack(size_t count) {
 }  // namespace
 
 ReachableElements::ReachableElements(const ImageIndex& index, const RenderCamera& camera,
-                                     const PlaceRange& places, const SelectOptions& select,
+                                     const RankRange& ranks, const SelectOptions& select,
                                      const PixelReading& reading, ThreadPool& pool,
                                      const std::function<RayWeights(LfImageId)>& weights) {
-  const TakingFrame frame = {camera, places};
+  const TakingFrame frame = {camera, ranks};
   const std::vector<SelectedImage> images = SelectImages(index, {&frame, 1}, select, pool);
   const LightField& light_field = index.light_field();
   image_count_ = images.size();
@@ -116,12 +116,12 @@ void ReachableElements::Join(const ReachableElements& other) {
   CountElements();
 }
 
-uint32_t DecisionPlaces(size_t light_field_image_count, size_t frame_image_count) {
-  uint32_t places = kDecisionPlaces;
+uint32_t DecisionRanks(size_t light_field_image_count, size_t frame_image_count) {
+  uint32_t ranks = kDecisionRanks;
   for (size_t taken = 2 * std::max<size_t>(1, frame_image_count);
-       taken <= light_field_image_count && places < 1u << 30; taken *= 2)
-    places *= 2;
-  return places;
+       taken <= light_field_image_count && ranks < 1u << 30; taken *= 2)
+    ranks *= 2;
+  return ranks;
 }
 
 bool HasSamples(const SensorPlate& plate, const ReachableElements& reachable, uint32_t samples) {

@@ -32,11 +32,11 @@ class ReachableElements {
  public:
   static constexpr int kGrid = 8;  // side of a square, in elements
 
-  // places   only LF images whose places are in this range are considered
+  // ranks   only LF images whose ranks are in this range are considered
   // reading  used only if select.reach is not kOwn, which is the reach of kNearest
   // weights  returns the weights of an LF image in the frame; empty: all rays through the lens have
   //          weight 1. Rays of weight 0 make no element reachable.
-  ReachableElements(const ImageIndex& index, const RenderCamera& camera, const PlaceRange& places,
+  ReachableElements(const ImageIndex& index, const RenderCamera& camera, const RankRange& ranks,
                     const SelectOptions& select, const PixelReading& reading, ThreadPool& pool,
                     const std::function<RayWeights(LfImageId)>& weights = {});
 
@@ -49,7 +49,7 @@ class ReachableElements {
   }
   // Number of reachable elements.
   size_t count() const { return count_; }
-  // Number of LF images within `places` that selection found for the frame.
+  // Number of LF images within `ranks` that selection found for the frame.
   size_t image_count() const { return image_count_; }
 
  private:
@@ -63,11 +63,11 @@ class ReachableElements {
   size_t image_count_ = 0;
 };
 
-// Returns the number of places from one application of a frame's rule to the next: 64 if the frame
+// Returns the number of ranks from one application of a frame's rule to the next: 64 if the frame
 // takes every LF image of the light field, and 64 * 2^k if it takes one in 2^k, so that the frame
 // gets 32 to 64 LF images from one application to the next. The rule is applied at the multiples of
 // this number. For any two frames, the larger number is a multiple of the smaller.
-uint32_t DecisionPlaces(size_t light_field_image_count, size_t frame_image_count);
+uint32_t DecisionRanks(size_t light_field_image_count, size_t frame_image_count);
 
 // Returns true if at least the share kMostElements of the reachable elements has `samples` or more
 // rays in every channel, or if no element is reachable. Returns quickly if far fewer elements have

@@ -10,12 +10,12 @@ namespace lf {
 namespace {
 
 TEST(SampleRule, IsAskedAboutEvery64ImagesOfAFrame) {
-  EXPECT_EQ(DecisionPlaces(1000, 1000), 64u);
-  EXPECT_EQ(DecisionPlaces(1000, 501), 64u);
-  EXPECT_EQ(DecisionPlaces(1000, 500), 128u);
-  EXPECT_EQ(DecisionPlaces(1000, 30), 64u * 32);
-  EXPECT_EQ(DecisionPlaces(1000, 0), DecisionPlaces(1000, 1));
-  EXPECT_EQ(DecisionPlaces(size_t{1} << 32, 1), 1u << 30);
+  EXPECT_EQ(DecisionRanks(1000, 1000), 64u);
+  EXPECT_EQ(DecisionRanks(1000, 501), 64u);
+  EXPECT_EQ(DecisionRanks(1000, 500), 128u);
+  EXPECT_EQ(DecisionRanks(1000, 30), 64u * 32);
+  EXPECT_EQ(DecisionRanks(1000, 0), DecisionRanks(1000, 1));
+  EXPECT_EQ(DecisionRanks(size_t{1} << 32, 1), 1u << 30);
 }
 
 // Compares ReachableElements with the counts of a plate that was collected by the estimator
@@ -40,7 +40,7 @@ TEST(SampleRule, ElementsAreReachableWhereTheyGetRays) {
     for (int y = 4; y < 80; y += 8)
       for (int x = 4; x < 160; x += 8)
         EXPECT_EQ(reachable.Holds(x, y), plate.At(x, y, 0).count > 0) << x << " " << y;
-    // There is no LF image at the places 5 to 5, so no element is reachable.
+    // There is no LF image at the ranks 5 to 5, so no element is reachable.
     EXPECT_EQ(ReachableElements(ImageIndex(field), camera, {5, 5}, {}, {}, pool).count(), 0u);
   }
 }

@@ -5,10 +5,10 @@
 
 namespace lf {
 
-uint32_t PhaseOf(uint32_t place) {
-  if (place < kDecisionPlaces) return 0;
-  uint32_t phase = kDecisionPlaces;
-  while (phase <= place / 4) phase *= 4;
+uint32_t PhaseOf(uint32_t rank) {
+  if (rank < kDecisionRanks) return 0;
+  uint32_t phase = kDecisionRanks;
+  while (phase <= rank / 4) phase *= 4;
   return phase;
 }
 
@@ -20,11 +20,11 @@ AskedPixels::AskedPixels(const LensGaps& gaps, bool collects, Previews previews)
       is_previewed_(collects && previews != Previews::kOff &&
                     (previews == Previews::kOn || gaps.collected_count() > kPreviewedFrom)),
       changes_until_(gaps.changes_until()),
-      previewed_until_(gaps.PlaceAfter(kPreviewImages)) {}
+      previewed_until_(gaps.RankAfter(kPreviewImages)) {}
 
-PixelRect AskedPixels::RectOf(const LfCamera& lf_camera, const ImageOverlap& overlap,
-                              uint32_t place, const SelectOptions& select) const {
-  const bool is_for_preview = place < previewed_until_ && IsPreviewed(PhaseOf(place));
+PixelRect AskedPixels::RectOf(const LfCamera& lf_camera, const ImageOverlap& overlap, uint32_t rank,
+                              const SelectOptions& select) const {
+  const bool is_for_preview = rank < previewed_until_ && IsPreviewed(PhaseOf(rank));
   if (!is_for_preview && !asks_in_the_end_) return {};
   return IsWithinAngle(lf_camera, camera_, select) ? overlap.Rect(camera_) : PixelRect();
 }

@@ -22,11 +22,11 @@ namespace lf {
 // ImageOrder::kShuffle, these LF images are spread over the whole lens (thesis 4.2.1).
 inline constexpr size_t kPreviewImages = 64;
 
-// Returns the first place of the phase that contains `place`. A place is a position in the order of
-// the LF images, from 0. Phases divide this order: they begin at place 0 and at kDecisionPlaces
+// Returns the first rank of the phase that contains `rank`. A rank is a position in the order of
+// the LF images, from 0. Phases divide this order: they begin at rank 0 and at kDecisionRanks
 // (render/collect/collect.h) times the powers of four. At the beginning of each phase, the queries
 // of the previews (the rays to be interpolated for them, rebinning/frame_queries.h) are updated.
-uint32_t PhaseOf(uint32_t place);
+uint32_t PhaseOf(uint32_t rank);
 
 class AskedPixels {
  public:
@@ -36,7 +36,7 @@ class AskedPixels {
   // Returns true if the frame needs rebinned rays, for its final picture or for a preview.
   bool AsksForAny() const { return asks_in_the_end_ || IsPreviewed(0); }
   bool asks_in_the_end() const { return asks_in_the_end_; }
-  // Returns true if rays are kept for previews in the phase that begins at place `phase`.
+  // Returns true if rays are kept for previews in the phase that begins at rank `phase`.
   bool IsPreviewed(uint32_t phase) const { return is_previewed_ && phase < changes_until_; }
 
   // A camera whose lens and plate contain all rebinned rays that the finished frame needs; the
@@ -45,8 +45,8 @@ class AskedPixels {
 
   // Returns the bounds of those pixels of an LF image whose rays may be kept; empty if no ray may
   // be kept.
-  //   overlap, place  the ImageOverlap of this LF image, and its place in the order
-  PixelRect RectOf(const LfCamera& lf_camera, const ImageOverlap& overlap, uint32_t place,
+  //   overlap, rank  the ImageOverlap of this LF image, and its rank in the order
+  PixelRect RectOf(const LfCamera& lf_camera, const ImageOverlap& overlap, uint32_t rank,
                    const SelectOptions& select) const;
 
  private:
@@ -54,7 +54,7 @@ class AskedPixels {
   bool asks_in_the_end_;
   bool is_previewed_;
   uint32_t changes_until_;
-  uint32_t previewed_until_;  // place after the last LF image whose rays are kept for previews
+  uint32_t previewed_until_;  // rank after the last LF image whose rays are kept for previews
 };
 
 // Returns the rectangle of an LF image that must be read to rebin the pixels of `rect`: `rect` with

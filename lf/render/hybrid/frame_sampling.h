@@ -36,7 +36,7 @@ struct FrameSampling {
 };
 
 // Returns the LF images with rays through the lens, or up to kFarthestDistances * camera_distance_w
-// beside it, by ascending places.
+// beside it, by ascending ranks.
 std::vector<SelectedImage> ImagesNearLens(const ImageIndex& index, const RenderCamera& frame,
                                           double camera_distance_w, const SelectOptions& select,
                                           ThreadPool& pool);

@@ -20,7 +20,7 @@ constexpr size_t kMostNodeValues = size_t{1} << 17;  // limit of the product nod
 }  // namespace
 
 LensGaps::LensGaps(const ImageIndex& index, const RenderCamera& frame,
-                   const CollectedWeights& collected, bool lens_test, const PlaceRange& places,
+                   const CollectedWeights& collected, bool lens_test, const RankRange& ranks,
                    const SelectOptions& select, const QueryOptions& options, ThreadPool& pool,
                    std::optional<double> camera_distance_w)
     : is_collected_(static_cast<bool>(collected)) {
@@ -29,8 +29,7 @@ LensGaps::LensGaps(const ImageIndex& index, const RenderCamera& frame,
       camera_distance_w ? *camera_distance_w : CameraDistanceAround(index, frame);
   if (!(distance_w > 0)) return;
   std::vector<SelectedImage> images = ImagesNearLens(index, frame, distance_w, select, pool);
-  std::erase_if(images,
-                [&places](const SelectedImage& image) { return !places.Holds(image.place); });
+  std::erase_if(images, [&ranks](const SelectedImage& image) { return !ranks.Holds(image.rank); });
   sampling_ = SamplingOf(index, frame, images, distance_w);
   if (!can_be_asked()) return;
   all_ = QueriesOf(frame, sampling_, options, SeenThrough(index, frame, images));
@@ -106,7 +105,7 @@ void LensGaps::FindGaps(const std::vector<LfImageId>& near, const ImageIndex& in
   struct Camera {
     RayThrough ray;
     RayWeights weights;
-    uint32_t place;
+    uint32_t rank;
     std::atomic<bool>* is_collected;
   };
   const auto collected_ones = std::make_unique<std::atomic<bool>[]>(near.size());
@@ -114,7 +113,7 @@ void LensGaps::FindGaps(const std::vector<LfImageId>& near, const ImageIndex& in
   for (const LfImageId id : near) {
     RayWeights weights = collected(id);
     cameras.push_back({RayThrough(index.light_field().Camera(id), frame.pinhole.ForwardWorld()),
-                       std::move(weights), index.PlaceOf(id), &collected_ones[cameras.size()]});
+                       std::move(weights), index.RankOf(id), &collected_ones[cameras.size()]});
   }
   covered_from_.assign(node_count() * points.size(), 0);
   pool.ForEach(node_count(), [&](size_t node) {
@@ -135,49 +134,49 @@ void LensGaps::FindGaps(const std::vector<LfImageId>& near, const ImageIndex& in
         if (distance2_w2 > reach2_w2[i]) continue;
         if (covered_from[i] == 0) covered_from[i] = UINT32_MAX;
         if (is_collected && distance2_w2 <= near_w * near_w)
-          covered_from[i] = std::min(covered_from[i], camera.place + 1);
+          covered_from[i] = std::min(covered_from[i], camera.rank + 1);
       }
     }
   });
   for (const Camera& camera : cameras)
-    if (*camera.is_collected) collected_places_.push_back(camera.place);
-  std::sort(collected_places_.begin(), collected_places_.end());
+    if (*camera.is_collected) collected_ranks_.push_back(camera.rank);
+  std::sort(collected_ranks_.begin(), collected_ranks_.end());
   for (const uint32_t from : covered_from_)
     if (from != UINT32_MAX) changes_until_ = std::max(changes_until_, from);
 }
 
-uint32_t LensGaps::PlaceAfter(size_t count) const {
-  count = std::min(count, collected_places_.size());
-  return count == 0 ? 0 : collected_places_[count - 1] + 1;
+uint32_t LensGaps::RankAfter(size_t count) const {
+  count = std::min(count, collected_ranks_.size());
+  return count == 0 ? 0 : collected_ranks_[count - 1] + 1;
 }
 
-bool LensGaps::NodeAsksAt(size_t node, uint32_t place) const {
+bool LensGaps::NodeAsksAt(size_t node, uint32_t rank) const {
   const size_t points = all_.points.point_count();
   const auto begin = covered_from_.begin() + static_cast<std::ptrdiff_t>(node * points);
   const auto missing = std::count_if(begin, begin + static_cast<std::ptrdiff_t>(points),
-                                     [place](uint32_t from) { return from > place; });
+                                     [rank](uint32_t from) { return from > rank; });
   return static_cast<double>(missing) > kLittleMissing * static_cast<double>(points);
 }
 
-FrameQueries LensGaps::QueriesAt(uint32_t place) const {
+FrameQueries LensGaps::QueriesAt(uint32_t rank) const {
   FrameQueries queries = all_;
   if (!is_collected_ || !can_be_asked()) return queries;
   const size_t points = all_.points.point_count();
   queries.shares = PointShares{columns_, rows_, points, {}};
   queries.shares->values.assign(covered_from_.size(), 0);
   for (size_t node = 0; node < node_count(); ++node) {
-    if (!NodeAsksAt(node, place)) continue;
+    if (!NodeAsksAt(node, rank)) continue;
     for (size_t i = node * points; i < (node + 1) * points; ++i)
-      queries.shares->values[i] = covered_from_[i] > place ? 1 : 0;
+      queries.shares->values[i] = covered_from_[i] > rank ? 1 : 0;
   }
   return queries;
 }
 
-bool LensGaps::AsksAt(uint32_t place) const {
+bool LensGaps::AsksAt(uint32_t rank) const {
   if (!can_be_asked()) return false;
   if (!is_collected_) return true;
   for (size_t node = 0; node < node_count(); ++node)
-    if (NodeAsksAt(node, place)) return true;
+    if (NodeAsksAt(node, rank)) return true;
   return false;
 }
 

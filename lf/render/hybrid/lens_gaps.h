@@ -42,12 +42,11 @@ class LensGaps {
   //   collected          empty: the frame collects no rays, and all lens points are gaps
   //   lens_test          true if only rays through the opening of the lens are collected
   //                      (FrameLens::tests_opening())
-  //   places             range of the places (ranks in the order) of the LF images that the frame
-  //                      takes
+  //   ranks              range of the ranks of the LF images that the frame takes
   //   camera_distance_w  CameraDistanceAround() in the whole light field. Must be set if the index
   //                      covers only a part of the light field; unset: measured in `index`
   LensGaps(const ImageIndex& index, const RenderCamera& frame, const CollectedWeights& collected,
-           bool lens_test, const PlaceRange& places, const SelectOptions& select,
+           bool lens_test, const RankRange& ranks, const SelectOptions& select,
            const QueryOptions& options, ThreadPool& pool,
            std::optional<double> camera_distance_w = {});
 
@@ -56,20 +55,20 @@ class LensGaps {
   const FrameSampling& sampling() const { return sampling_; }
   const RenderCamera& camera() const { return all_.camera; }
   // Number of LF images that have a collected ray at one or more nodes; 0 if `collected` is empty.
-  size_t collected_count() const { return collected_places_.size(); }
-  // Takes the first `count` LF images, by ascending places, of those that collected_count() counts
-  // (all if they are fewer). Returns the place after the last of these; 0 if there are none.
-  uint32_t PlaceAfter(size_t count) const;
+  size_t collected_count() const { return collected_ranks_.size(); }
+  // Takes the first `count` LF images, by ascending ranks, of those that collected_count() counts
+  // (all if they are fewer). Returns the rank after the last of these; 0 if there are none.
+  uint32_t RankAfter(size_t count) const;
 
-  // QueriesAt() returns the queries that the frame needs when exactly the LF images at places
-  // before `place` are collected. AsksAt() returns true if any node then needs rebinned rays;
+  // QueriesAt() returns the queries that the frame needs when exactly the LF images at ranks
+  // before `rank` are collected. AsksAt() returns true if any node then needs rebinned rays;
   // asks_in_the_end() returns AsksAt(kInTheEnd).
-  FrameQueries QueriesAt(uint32_t place) const;
-  bool AsksAt(uint32_t place) const;
+  FrameQueries QueriesAt(uint32_t rank) const;
+  bool AsksAt(uint32_t rank) const;
   bool asks_in_the_end() const { return asks_in_the_end_; }
-  // Place from which on QueriesAt() returns the same queries for all higher places.
+  // Rank from which on QueriesAt() returns the same queries for all higher ranks.
   uint32_t changes_until() const { return changes_until_; }
-  // A place behind those of all LF images: the end of the render.
+  // A rank behind those of all LF images: the end of the render.
   static constexpr uint32_t kInTheEnd = UINT32_MAX - 1;
 
   // Returns the frame's camera with its lens and plate enlarged by the reach of the kernels,
@@ -79,7 +78,7 @@ class LensGaps {
  private:
   void SetNodes(const std::vector<LfImageId>& near, const ImageIndex& index);
   size_t node_count() const { return static_cast<size_t>(columns_.count()) * rows_.count(); }
-  bool NodeAsksAt(size_t node, uint32_t place) const;
+  bool NodeAsksAt(size_t node, uint32_t rank) const;
   void FindGaps(const std::vector<LfImageId>& near, const ImageIndex& index,
                 const CollectedWeights& collected, bool lens_test, ThreadPool& pool);
 
@@ -88,14 +87,14 @@ class LensGaps {
   bool is_collected_ = false;
   NodeAxis columns_{1};  // grid of nodes over the plate
   NodeAxis rows_{1};
-  // Place from which on a lens point is covered at a node: one after the place of the first LF
+  // Rank from which on a lens point is covered at a node: one after the rank of the first LF
   // image that covers it. UINT32_MAX: never covered. 0: no LF camera within the reach of the lens
   // point sees the focus point of the node, so that the lens point is no gap.
   std::vector<uint32_t> covered_from_;  // [rows][columns][points]
   uint32_t changes_until_ = 0;
   bool asks_in_the_end_ = false;
-  // places of the LF images that collected_count() counts, ascending
-  std::vector<uint32_t> collected_places_;
+  // ranks of the LF images that collected_count() counts, ascending
+  std::vector<uint32_t> collected_ranks_;
 };
 
 }  // namespace lf

@@ -36,10 +36,10 @@ RenderCamera Frame(double radius_w, double x = 0, double z = 0) {
   return frame;
 }
 
-LensGaps GapsOf(const LightField& field, const RenderCamera& frame, const PlaceRange& places = {}) {
+LensGaps GapsOf(const LightField& field, const RenderCamera& frame, const RankRange& ranks = {}) {
   ThreadPool pool(2);
   return LensGaps(
-      ImageIndex(field, 1), frame, [](LfImageId) { return RayWeights(1); }, true, places, {}, {},
+      ImageIndex(field, 1), frame, [](LfImageId) { return RayWeights(1); }, true, ranks, {}, {},
       pool);
 }
 
@@ -60,8 +60,8 @@ TEST(LensGaps, NothingIsCollectedBeforeTheFirstImageAndLessIsMissingWithEach) {
   const LensGaps gaps = GapsOf(Grid(), Frame(0.03));
   EXPECT_EQ(AskedShare(gaps.QueriesAt(0)), 1);
   double before = 1;
-  for (const uint32_t place : {8u, 32u, 64u, 128u, 144u}) {
-    const double now = AskedShare(gaps.QueriesAt(place));
+  for (const uint32_t rank : {8u, 32u, 64u, 128u, 144u}) {
+    const double now = AskedShare(gaps.QueriesAt(rank));
     EXPECT_LE(now, before);
     before = now;
   }
@@ -120,14 +120,14 @@ TEST(LensGaps, KnowsWhatIsCollectedAndWhen) {
   for (const LfCamera& camera : field.cameras)
     inside += camera.cam_from_world.Inverse().translation.norm() <= 0.03 ? 1 : 0;
   EXPECT_EQ(gaps.collected_count(), inside);
-  EXPECT_EQ(gaps.PlaceAfter(0), 0u);
+  EXPECT_EQ(gaps.RankAfter(0), 0u);
   uint32_t before = 0;
   for (size_t count = 1; count <= inside; ++count) {
-    const uint32_t place = gaps.PlaceAfter(count);
-    EXPECT_GT(place, before);
-    before = place;
+    const uint32_t rank = gaps.RankAfter(count);
+    EXPECT_GT(rank, before);
+    before = rank;
   }
-  EXPECT_EQ(gaps.PlaceAfter(1000), before);
+  EXPECT_EQ(gaps.RankAfter(1000), before);
   EXPECT_LE(before, 144u);
 }
 

@@ -88,7 +88,7 @@ Result<RebinCost> MeasureRebinning(const ImageIndex& index, const LfImageStore& 
   for (SelectedImage& image : images) {
     if (used.size() == most) break;
     ++found;
-    if (rays.RectOf(image.id, image.place).empty() || !store.IsThere(image.id)) continue;
+    if (rays.RectOf(image.id, image.rank).empty() || !store.IsThere(image.id)) continue;
     image.rect = {};  // none of its pixels is collected
     used.push_back(image);
   }
@@ -101,8 +101,8 @@ Result<RebinCost> MeasureRebinning(const ImageIndex& index, const LfImageStore& 
 
   CollectOptions collect;
   collect.reading = reading;
-  collect.place_end = index.place_end();
-  collect.decision_places = kDecisionPlaces;
+  collect.rank_end = index.rank_end();
+  collect.decision_ranks = kDecisionRanks;
   collect.consumer = &rays;
   if (!used.empty()) {
     LF_RETURN_IF_ERROR(Collect(index.light_field(), store, {}, used, collect, pool, nullptr));

@@ -44,7 +44,7 @@ struct RebinnedRays::Section {
   Expected expected;
   std::unique_ptr<RayMap> map;
   uint32_t phase = 0;
-  uint32_t places_done = 0;
+  uint32_t ranks_done = 0;
   // The cells of the map, cached; unset if the map has changed since.
   std::optional<std::vector<BinnedCell>> cells = {};
 };
@@ -152,12 +152,12 @@ void RebinnedRays::Begin(uint32_t phase, Section& section) {
       pool_);
 }
 
-uint32_t RebinnedRays::places_done() const {
+uint32_t RebinnedRays::ranks_done() const {
   uint32_t least = UINT32_MAX;
-  for (const auto& section : sections_) least = std::min(least, section->places_done);
+  for (const auto& section : sections_) least = std::min(least, section->ranks_done);
   return least;
 }
-uint32_t RebinnedRays::places_done(size_t section) const { return sections_[section]->places_done; }
+uint32_t RebinnedRays::ranks_done(size_t section) const { return sections_[section]->ranks_done; }
 const RayMap& RebinnedRays::map(size_t section) const { return *sections_[section]->map; }
 RebinnedRays::Expected RebinnedRays::expected(size_t section) const {
   return sections_[section]->expected;
@@ -168,16 +168,16 @@ void RebinnedRays::SortCells() {
     if (!section->cells) section->cells = section->map->Cells(pool_);
 }
 
-void RebinnedRays::Restore(size_t number, RayMap map, uint32_t places_done) {
+void RebinnedRays::Restore(size_t number, RayMap map, uint32_t ranks_done) {
   Section& section = *sections_[number];
   // Restores the coverage of previews that was valid when the last LF image was taken.
-  if (places_done > 0) Begin(PhaseOf(places_done - 1), section);
+  if (ranks_done > 0) Begin(PhaseOf(ranks_done - 1), section);
   *section.map = std::move(map);
-  section.places_done = places_done;
+  section.ranks_done = ranks_done;
   section.cells.reset();
 }
 
-PixelRect RebinnedRays::RectOf(LfImageId id, uint32_t place, size_t begin, size_t end) const {
+PixelRect RebinnedRays::RectOf(LfImageId id, uint32_t rank, size_t begin, size_t end) const {
   const PinholeCamera camera = light_field_.Camera(id);
   std::vector<IdealCell> cells;
   if (camera.intrinsics.has_distortion()) cells = MakeIdealCells(camera.intrinsics);
@@ -185,12 +185,12 @@ PixelRect RebinnedRays::RectOf(LfImageId id, uint32_t place, size_t begin, size_
   PixelRect rect;
   for (size_t i = begin; i < end; ++i)
     rect = Bounds(rect,
-                  asking_[i].asked.RectOf(light_field_.cameras[id.value], overlap, place, select_));
+                  asking_[i].asked.RectOf(light_field_.cameras[id.value], overlap, rank, select_));
   return rect;
 }
 
-PixelRect RebinnedRays::RectOf(LfImageId id, uint32_t place) const {
-  return GrownBy(RectOf(id, place, 0, asking_.size()), PixelsAround(options_.rebin, true),
+PixelRect RebinnedRays::RectOf(LfImageId id, uint32_t rank) const {
+  return GrownBy(RectOf(id, rank, 0, asking_.size()), PixelsAround(options_.rebin, true),
                  light_field_.Camera(id).intrinsics);
 }
 
@@ -208,21 +208,21 @@ const RenderCamera* RebinnedRays::ReachedCamera(size_t frame) const {
   return asking == nullptr ? nullptr : &asking->asked.camera();
 }
 
-void RebinnedRays::Take(std::span<const BatchImage> images, uint32_t place_end) {
+void RebinnedRays::Take(std::span<const BatchImage> images, uint32_t rank_end) {
   ideal_pixels_.Keep(light_field_, images,
                      [&](size_t count, const auto& body) { pool_.ForEach(count, body); });
   for (const auto& section : sections_) {
-    if (place_end <= section->places_done) continue;
+    if (rank_end <= section->ranks_done) continue;
     const auto first = std::find_if(images.begin(), images.end(), [&](const BatchImage& image) {
-      return image.place >= section->places_done;
+      return image.rank >= section->ranks_done;
     });
     const auto left = images.subspan(static_cast<size_t>(first - images.begin()));
-    section->places_done = place_end;
+    section->ranks_done = rank_end;
     if (left.empty()) continue;
-    // A batch never extends into the next phase, because CollectOptions::decision_places ends
+    // A batch never extends into the next phase, because CollectOptions::decision_ranks ends
     // batches there.
-    const uint32_t phase = PhaseOf(left.front().place);
-    LF_CHECK(PhaseOf(left.back().place) == phase);
+    const uint32_t phase = PhaseOf(left.front().rank);
+    LF_CHECK(PhaseOf(left.back().rank) == phase);
     if (phase != section->phase) Begin(phase, *section);
     Rebin(left, *section);
   }
@@ -236,7 +236,7 @@ void RebinnedRays::Rebin(std::span<const BatchImage> images, Section& section) {
   };
   std::vector<PixelRect> rects(images.size());
   pool_.ForEach(images.size(), [&](size_t i) {
-    rects[i] = Intersection(images[i].pixels.rect, RectOf(images[i].id, images[i].place,
+    rects[i] = Intersection(images[i].pixels.rect, RectOf(images[i].id, images[i].rank,
                                                           section.plan.begin, section.plan.end));
   });
   const bool by_edges = !keeps_all_ || !section.previews.is_empty();
@@ -338,18 +338,18 @@ SplatFrame RebinnedRays::SplatOfPoints(const Section& section, const FrameQuerie
   return sum;
 }
 
-Completion RebinnedRays::Complete(size_t frame, uint32_t place) {
+Completion RebinnedRays::Complete(size_t frame, uint32_t rank) {
   const LensGaps& gaps = frames_[frame].gaps;
   const Intrinsics& plate = gaps.camera().pinhole.intrinsics;
   Completion completion{Image<float>(plate.width_px, plate.height_px, 3),
                         Image<float>(plate.width_px, plate.height_px)};
   const AskingFrame* const asking = Asking(frame);
-  if (asking == nullptr || !gaps.AsksAt(place)) return completion;
+  if (asking == nullptr || !gaps.AsksAt(rank)) return completion;
   const auto number = static_cast<size_t>(asking - asking_.data());
   const auto section = std::find_if(sections_.begin(), sections_.end(),
                                     [number](const auto& one) { return number < one->plan.end; });
   if (!(*section)->cells) (*section)->cells = (*section)->map->Cells(pool_);
-  const FrameQueries queries = gaps.QueriesAt(place);
+  const FrameQueries queries = gaps.QueriesAt(rank);
   SplatFrame splat =
       options_.reparameterise ? SplatOf(**section, queries) : SplatOfPoints(**section, queries);
   completion.rgb = std::move(splat.rgb);

@@ -7,9 +7,9 @@
 // Eq. 4.4). A preview (a picture of an unfinished frame, asked_pixels.h) needs more rays: while few
 // LF images are collected, rebinned rays at edges fill the lens points that no collected ray covers
 // yet. The queries of previews (the rays to be interpolated, rebinning/frame_queries.h) are updated
-// before the LF images at places 64, 256, 1024, ... of the order: cells that no query can use any
+// before the LF images at ranks 64, 256, 1024, ... of the order: cells that no query can use any
 // more are dropped, and rebinning stops once no frame needs more rays. All of this depends on
-// places, not on time, so that the kept rays depend neither on the number of threads nor on
+// ranks, not on time, so that the kept rays depend neither on the number of threads nor on
 // interruptions.
 #pragma once
 
@@ -36,7 +36,7 @@
 namespace lf {
 
 // A frame that may be completed by rebinned rays. Rebinned rays are made from LF images at all
-// places of the order, even if the frame collects rays from fewer.
+// ranks of the order, even if the frame collects rays from fewer.
 struct RebinnedFrame {
   FrameId id;
   LensGaps gaps;
@@ -53,19 +53,19 @@ class RebinnedRays : public ImageConsumer {
                ThreadPool& pool);
   ~RebinnedRays() override;
 
-  uint32_t places_done() const override;
-  PixelRect RectOf(LfImageId id, uint32_t place) const override;
-  void Take(std::span<const BatchImage> images, uint32_t place_end) override;
+  uint32_t ranks_done() const override;
+  PixelRect RectOf(LfImageId id, uint32_t rank) const override;
+  void Take(std::span<const BatchImage> images, uint32_t rank_end) override;
 
   // Returns the camera for which LF images to rebin are selected (AskedPixels::camera()). Null if
   // neither the finished frame nor its previews need rebinned rays.
   //   frame  index in the constructor's `frames`
   const RenderCamera* ReachedCamera(size_t frame) const;
 
-  // Returns the interpolated part of a frame when exactly the LF images at places before `place`
+  // Returns the interpolated part of a frame when exactly the LF images at ranks before `rank`
   // are collected.
   //   frame  index in the constructor's `frames`
-  Completion Complete(size_t frame, uint32_t place);
+  Completion Complete(size_t frame, uint32_t rank);
 
   // The state from which an interrupted render resumes: a map of rays for each section.
   // Consecutive frames that need rebinned rays and have the same slab form a section. All sections
@@ -74,11 +74,11 @@ class RebinnedRays : public ImageConsumer {
   const RayMap& map(size_t section) const;
   // Largest number of cells of a section.
   size_t max_cells_per_section() const { return max_cells_per_section_; }
-  uint32_t places_done(size_t section) const;
+  uint32_t ranks_done(size_t section) const;
   // Replaces the map of a section, for example by one that an earlier run saved.
-  //   map  made for max_cells_per_section() cells; has the rays of all LF images at places before
-  //        places_done
-  void Restore(size_t section, RayMap map, uint32_t places_done);
+  //   map  made for max_cells_per_section() cells; has the rays of all LF images at ranks before
+  //        ranks_done
+  void Restore(size_t section, RayMap map, uint32_t ranks_done);
 
   // BytesOf() returns an upper bound of the memory for max_cells cells: their map, the rays of one
   // frame that are made from them, the rays that wait to be inserted, and the coverage maps.
@@ -123,7 +123,7 @@ class RebinnedRays : public ImageConsumer {
   };
   const AskingFrame* Asking(size_t frame) const;
   void MakeSections(const FilmSlabs& slabs);
-  PixelRect RectOf(LfImageId id, uint32_t place, size_t begin, size_t end) const;
+  PixelRect RectOf(LfImageId id, uint32_t rank, size_t begin, size_t end) const;
   void MakeMaps(const ImageIndex& index);
   void Begin(uint32_t phase, Section& section);
   SplatFrame SplatBy(std::span<const FrameRay> rays, const FrameQueries& queries,

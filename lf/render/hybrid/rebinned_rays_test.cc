@@ -56,7 +56,7 @@ struct Fixture {
     ThreadPool pool(threads);
     const testing::NoiseStore store;
     Outcome outcome;
-    std::vector<PlaceRange> places(frames.size());
+    std::vector<RankRange> ranks(frames.size());
     for (const RenderCamera& frame : frames)
       outcome.plates.emplace_back(frame.pinhole.intrinsics.width_px,
                                   frame.pinhole.intrinsics.height_px);
@@ -64,9 +64,9 @@ struct Fixture {
     for (int round = 0; round < 2; ++round) {
       std::vector<TakingFrame> taking;
       for (size_t f = 0; f < frames.size(); ++f) {
-        if (collects) taking.push_back({frames[f], places[f]});
+        if (collects) taking.push_back({frames[f], ranks[f]});
         if (const RenderCamera* const reached = rays->ReachedCamera(f))
-          taking.push_back({*reached, {rays->places_done()}});
+          taking.push_back({*reached, {rays->ranks_done()}});
       }
       const auto order = SelectImages(index, taking, select, pool);
       CollectOptions collect;
@@ -76,17 +76,16 @@ struct Fixture {
       const size_t count = collects ? frames.size() : 0;
       std::vector<CollectedFrame> collected =
           FramesOf(std::span(frames).first(count), outcome.plates);
-      for (size_t f = 0; f < count; ++f) collected[f].places = places[f];
+      for (size_t f = 0; f < count; ++f) collected[f].ranks = ranks[f];
       FrameCollector collector(field, store, std::move(collected), order, collect, pool);
       for (size_t step = 0; step < interrupted_after; ++step)
         if (!*collector.Step()) break;
       if (interrupted_after == SIZE_MAX) break;
       interrupted_after = SIZE_MAX;
-      for (size_t f = 0; f < count; ++f)
-        places[f].begin = collector.frames()[f].progress.places_done;
+      for (size_t f = 0; f < count; ++f) ranks[f].begin = collector.frames()[f].progress.ranks_done;
       std::unique_ptr<RebinnedRays> again = Make(pool);
       for (size_t i = 0; i < rays->section_count(); ++i)
-        again->Restore(i, RayMap(rays->map(i)), rays->places_done(i));
+        again->Restore(i, RayMap(rays->map(i)), rays->ranks_done(i));
       rays = std::move(again);
     }
     for (size_t f = 0; f < frames.size(); ++f)
@@ -165,18 +164,18 @@ TEST(RebinnedRays, PreviewsAskForMoreThanTheFinishedFrames) {
   const Fixture fixture;
   const std::unique_ptr<RebinnedRays> rays = fixture.Make(pool);
   const testing::NoiseStore store;
-  const uint32_t end = fixture.index.place_end();
+  const uint32_t end = fixture.index.rank_end();
   std::vector<BatchImage> images(fixture.field.size());
   for (uint32_t i = 0; i < images.size(); ++i) {
-    BatchImage& image = images[fixture.index.PlaceOf(LfImageId{i})];
+    BatchImage& image = images[fixture.index.RankOf(LfImageId{i})];
     image.id = LfImageId{i};
-    image.place = fixture.index.PlaceOf(image.id);
+    image.rank = fixture.index.RankOf(image.id);
     ASSERT_TRUE(store.Load(image.id, {0, 0, testing::kWidth, testing::kHeight}, &image.pixels));
   }
   ASSERT_GT(end, 64u);
   EXPECT_GT(rays->RectOf(images[3].id, 3).pixel_count(), 0);
   rays->Take(std::span(images).first(64), 64);
-  EXPECT_EQ(rays->places_done(), 64u);
+  EXPECT_EQ(rays->ranks_done(), 64u);
   const double share = MeanShare(rays->Complete(1, 20));
   const size_t before = rays->facts().cell_count;
   rays->Take(std::span(images).subspan(64), end);
@@ -201,7 +200,7 @@ TEST(RebinnedRays, PreviewsAreOfFramesThatTakeLong) {
     const std::unique_ptr<RebinnedRays> rays = fixture.Make(pool);
     BatchImage image;
     for (uint32_t i = 0; i < fixture.field.size(); ++i)
-      if (fixture.index.PlaceOf(LfImageId{i}) == 0) image.id = LfImageId{i};
+      if (fixture.index.RankOf(LfImageId{i}) == 0) image.id = LfImageId{i};
     EXPECT_TRUE(store.Load(image.id, {0, 0, testing::kWidth, testing::kHeight}, &image.pixels));
     rays->Take(std::span(&image, 1), 1);
     return rays->facts().looked_at;

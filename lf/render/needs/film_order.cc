@@ -5,10 +5,10 @@
 
 namespace lf {
 
-Result<ImagePlaces> PlacesOfFilm(ImageOrder order, uint64_t seed, const LightField& light_field,
-                                 const CameraPath& path, const NeedsOptions& needs,
-                                 ThreadPool& pool) {
-  ImagePlaces shuffled = ShuffledPlaces(light_field.size(), seed);
+Result<ImageRanks> RanksOfFilm(ImageOrder order, uint64_t seed, const LightField& light_field,
+                               const CameraPath& path, const NeedsOptions& needs,
+                               ThreadPool& pool) {
+  ImageRanks shuffled = ShuffledRanks(light_field.size(), seed);
   if (order == ImageOrder::kShuffle) return shuffled;
   const ImageIndex index(light_field, std::move(shuffled));
   NeedsOptions unlimited = needs;
@@ -24,7 +24,7 @@ Result<ImagePlaces> PlacesOfFilm(ImageOrder order, uint64_t seed, const LightFie
     if (needs.select.interrupted != nullptr && *needs.select.interrupted)
       return Error{ErrorKind::kInterrupted, "interrupted"};
   }
-  return PlacesInOrder(order, light_field.size(), seed, taken);
+  return RanksInOrder(order, light_field.size(), seed, taken);
 }
 
 }  // namespace lf

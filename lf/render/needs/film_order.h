@@ -20,8 +20,7 @@ namespace lf {
 // Unless `order` is kShuffle, LF images that no frame reads (FrameNeeds::images) come last.
 //   needs  options with which the film will be rendered; max_image_count is ignored
 // kInterrupted: *needs.select.interrupted became true; never if `order` is kShuffle.
-Result<ImagePlaces> PlacesOfFilm(ImageOrder order, uint64_t seed, const LightField& light_field,
-                                 const CameraPath& path, const NeedsOptions& needs,
-                                 ThreadPool& pool);
+Result<ImageRanks> RanksOfFilm(ImageOrder order, uint64_t seed, const LightField& light_field,
+                               const CameraPath& path, const NeedsOptions& needs, ThreadPool& pool);
 
 }  // namespace lf

@@ -66,12 +66,12 @@ class NeedsFinder {
     const FrameLens& counted = is_guarded ? *recorded_lens_ : lens_;
     std::vector<TakingFrame> frames = {Taking(counted)};
     if (options_.max_image_count)
-      frames[0].places =
-          PlacesOfFirst(*options_.max_image_count, is_guarded ? index_.recorded() : index_,
-                        frames[0], options_.select);
+      frames[0].ranks =
+          RanksOfFirst(*options_.max_image_count, is_guarded ? index_.recorded() : index_,
+                       frames[0], options_.select);
     if (is_guarded) {
       frames.push_back(Taking(lens_));
-      frames[1].places = frames[0].places;
+      frames[1].ranks = frames[0].ranks;
     }
     for (const SelectedImage& image : SelectImages(index_, frames, options_.select, pool_))
       needs_.images.push_back({image.id, image.rect, image.ray_count});
@@ -109,17 +109,17 @@ class NeedsFinder {
     if (camera.intrinsics.has_distortion()) cells = MakeIdealCells(camera.intrinsics);
     const ImageOverlap overlap(camera, cells, options_.select.reach);
     const PixelRect rect =
-        asked.RectOf(light_field.cameras[image.id.value], overlap, image.place, options_.select);
+        asked.RectOf(light_field.cameras[image.id.value], overlap, image.rank, options_.select);
     return GrownBy(rect, PixelsAround(options_.rebin.rebin, true), camera.intrinsics);
   }
 
   // Merges `rebinned` into needs_.images. Both lists are by ascending ranks.
   void Join(const std::vector<FrameNeeds::Image>& rebinned) {
-    const auto place = [this](const FrameNeeds::Image& image) { return index_.PlaceOf(image.id); };
+    const auto rank = [this](const FrameNeeds::Image& image) { return index_.RankOf(image.id); };
     std::vector<FrameNeeds::Image> joined;
     auto next = rebinned.begin();
     for (const FrameNeeds::Image& image : needs_.images) {
-      while (next != rebinned.end() && place(*next) < place(image)) joined.push_back(*next++);
+      while (next != rebinned.end() && rank(*next) < rank(image)) joined.push_back(*next++);
       joined.push_back(image);
       if (next == rebinned.end() || next->id != image.id) continue;
       joined.back().rect = Bounds(image.rect, next->rect);
@@ -174,11 +174,11 @@ class NeedsFinder {
     for (const LfImageId id : lens_.near()) {
       SelectedImage image;
       image.id = id;
-      image.place = index_.PlaceOf(id);
+      image.rank = index_.RankOf(id);
       near.push_back(image);
     }
     std::sort(near.begin(), near.end(),
-              [](const SelectedImage& a, const SelectedImage& b) { return a.place < b.place; });
+              [](const SelectedImage& a, const SelectedImage& b) { return a.rank < b.rank; });
     return near;
   }
 
@@ -243,9 +243,8 @@ FrameNeeds NeedsOf(const ImageIndex& index, const CameraPath& path, FrameId fram
       taking.back().takes = [&lens](LfImageId id) { return lens.Takes(id); };
   }
   if (options.max_image_count) {
-    const PlaceRange places =
-        PlacesOfFirst(*options.max_image_count, index, taking, options.select);
-    for (TakingFrame& instant : taking) instant.places = places;
+    const RankRange ranks = RanksOfFirst(*options.max_image_count, index, taking, options.select);
+    for (TakingFrame& instant : taking) instant.ranks = ranks;
   }
   FrameNeeds needs;
   for (const SelectedImage& image : SelectImages(index, taking, options.select, pool))

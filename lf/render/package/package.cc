@@ -38,7 +38,7 @@ Package PackageOfAll(LightField light_field, CameraPath path, uint64_t seed) {
   Package package;
   package.whole = IdentityOf(light_field);
   package.whole_virtual_count = light_field.size() - RecordedCount(light_field);
-  package.places = ShuffledPlaces(light_field.size(), seed);
+  package.ranks = ShuffledRanks(light_field.size(), seed);
   package.choices.seed = seed;
   for (uint32_t n = 1; n <= path.frame_count(); ++n) package.frames.push_back({.id = FrameId{n}});
   package.light_field = std::move(light_field);

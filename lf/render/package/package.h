@@ -87,7 +87,7 @@ struct Package {
   LightField light_field;
   PackageSource source;
   // Ranks of the LF images of `light_field` in the order of the whole light field.
-  ImagePlaces places;
+  ImageRanks ranks;
   CameraPath path;                   // camera path of the whole film
   std::vector<PackageFrame> frames;  // the frames to render, by ascending ids
   LightFieldIdentity whole;          // identity of the light field from which the package is made

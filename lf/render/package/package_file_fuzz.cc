@@ -24,11 +24,11 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size_bytes) {
   if (package) {
     const lf::LightField& field = package->light_field;
     LF_CHECK(field.size() == package->images.size());
-    LF_CHECK(field.size() == package->places.of_images.size());
+    LF_CHECK(field.size() == package->ranks.of_images.size());
     LF_CHECK(field.size() - lf::RecordedCount(field) <= package->whole_virtual_count);
     for (size_t i = 0; i < field.size(); ++i) {
       LF_CHECK(field.cameras[i].intrinsics_index < field.intrinsics.size());
-      LF_CHECK(package->places.of_images[i] < package->places.end);
+      LF_CHECK(package->ranks.of_images[i] < package->ranks.end);
       LF_CHECK(field.cameras[i].cam_from_world.translation.allFinite());
     }
     for (const lf::PackageFrame& frame : package->frames)

@@ -24,7 +24,7 @@ Package TestPackage() {
   package.count = 8;
   package.whole = {1000, "0123456789abcdef", "fedcba9876543210"};
   package.choices = {ImageOrder::kRoundRobin, UINT64_MAX, 17, 0.25, true, RenderMode::kHybrid};
-  package.places.end = 1000;
+  package.ranks.end = 1000;
   LightField& field = package.light_field;
   field.folder = "/nowhere/images";
   field.unit_m = 0.01;
@@ -52,7 +52,7 @@ Package TestPackage() {
     }
     field.image_names.push_back("bänd/ima'ge " + std::to_string(i) + ".png");
     field.mask_names.push_back(i % 2 == 0 ? "" : "mask.png");
-    package.places.of_images.push_back((i * 717 + 5) % 1000);
+    package.ranks.of_images.push_back((i * 717 + 5) % 1000);
     PackageImage image{25 * i, 1000000000000ULL + i, {}, 0, 0};
     if (i < 35) image = {25 * i, i, {1, 2, 30, 41 + static_cast<int>(i)}, i, uint64_t{i} << 40};
     package.images.push_back(image);
@@ -217,8 +217,8 @@ TEST_F(PackageFileTest, ReadsWhatWasWrittenToTheBit) {
   EXPECT_EQ(read->choices.max_angle_rad, package.choices.max_angle_rad);
   EXPECT_EQ(read->choices.has_neighbours, package.choices.has_neighbours);
   EXPECT_EQ(read->choices.mode, package.choices.mode);
-  EXPECT_EQ(read->places.of_images, package.places.of_images);
-  EXPECT_EQ(read->places.end, package.places.end);
+  EXPECT_EQ(read->ranks.of_images, package.ranks.of_images);
+  EXPECT_EQ(read->ranks.end, package.ranks.end);
 
   // The first two LF images have one pose and different gains.
   EXPECT_TRUE(read->light_field.cameras[0].masks_clipped);

@@ -78,7 +78,7 @@ Result<void> Reader::ReadSettings() {
   package_.whole = {whole_count, settings_.Text("light_field.names"),
                     settings_.Text("light_field.calibration")};
   LF_ASSIGN_OR_RETURN(const double end, settings_.Number("ranks", 1, kMostImages));
-  package_.places.end = static_cast<uint32_t>(end);
+  package_.ranks.end = static_cast<uint32_t>(end);
   LF_RETURN_IF_ERROR(ReadNumber());
   LF_ASSIGN_OR_RETURN(package_.path.fps, settings_.Number("fps", 1e-3, 1e6));
   LF_ASSIGN_OR_RETURN(package_.path.unit_m, settings_.Number("path_unit_m", 1e-9, 1e9));
@@ -159,9 +159,9 @@ Result<void> Reader::ReadImages() {
   // The LF images of one pose (a bracket) see the same rays, so that the package has all of them or
   // none.
   if (light_field.encoding.masks_clipped) ApplyBrackets(&light_field);
-  std::vector<uint32_t> places = package_.places.of_images;
-  std::sort(places.begin(), places.end());
-  if (std::adjacent_find(places.begin(), places.end()) != places.end())
+  std::vector<uint32_t> ranks = package_.ranks.of_images;
+  std::sort(ranks.begin(), ranks.end());
+  if (std::adjacent_find(ranks.begin(), ranks.end()) != ranks.end())
     return Damaged("two LF images have the same rank in the order");
   return {};
 }
@@ -194,7 +194,7 @@ Result<void> Reader::ReadVirtual() {
 
 Result<void> Reader::ReadImage(const Statement& row) {
   LightField& light_field = package_.light_field;
-  LF_ASSIGN_OR_RETURN(const int64_t place, row.Integer(0, 0, package_.places.end - 1));
+  LF_ASSIGN_OR_RETURN(const int64_t rank, row.Integer(0, 0, package_.ranks.end - 1));
   PackageImage image;
   LF_ASSIGN_OR_RETURN(const int64_t id, row.Integer(1, 0, kMostImages));
   LF_ASSIGN_OR_RETURN(std::string name, row.Text(2));
@@ -217,7 +217,7 @@ Result<void> Reader::ReadImage(const Statement& row) {
   light_field.cameras.push_back(camera);
   light_field.image_names.push_back(std::move(name));
   light_field.mask_names.push_back(std::move(mask));
-  package_.places.of_images.push_back(static_cast<uint32_t>(place));
+  package_.ranks.of_images.push_back(static_cast<uint32_t>(rank));
   package_.images.push_back(image);
   return {};
 }

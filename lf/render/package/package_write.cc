@@ -69,7 +69,7 @@ class Writer {
     const SettingList of_choices = {
         {"order", NameOf(choices.order)},
         {"seed", fmt::format("{}", choices.seed)},
-        {"ranks", fmt::format("{}", package_.places.end)},
+        {"ranks", fmt::format("{}", package_.ranks.end)},
         {"max_images", choices.max_image_count ? fmt::format("{}", *choices.max_image_count) : ""},
         {"max_angle_rad", choices.max_angle_rad ? fmt::format("{}", *choices.max_angle_rad) : ""},
         {"lens_neighbours", choices.has_neighbours ? "yes" : "no"},
@@ -99,11 +99,11 @@ class Writer {
     std::vector<uint32_t> order(light_field_.size());
     std::iota(order.begin(), order.end(), 0U);
     std::sort(order.begin(), order.end(), [this](uint32_t a, uint32_t b) {
-      return package_.places.of_images[a] < package_.places.of_images[b];
+      return package_.ranks.of_images[a] < package_.ranks.of_images[b];
     });
     for (const uint32_t i : order) {
-      const int64_t place = package_.places.of_images[i];
-      LF_RETURN_IF_ERROR(WriteImage(&image, i, place));
+      const int64_t rank = package_.ranks.of_images[i];
+      LF_RETURN_IF_ERROR(WriteImage(&image, i, rank));
     }
     return {};
   }
@@ -120,9 +120,9 @@ class Writer {
     return {};
   }
 
-  Result<void> WriteImage(Statement* insert, uint32_t i, int64_t place) {
+  Result<void> WriteImage(Statement* insert, uint32_t i, int64_t rank) {
     const PackageImage& image = package_.images[i];
-    insert->Bind(0, place).Bind(1, int64_t{image.id});
+    insert->Bind(0, rank).Bind(1, int64_t{image.id});
     insert->Bind(2, std::string_view(light_field_.image_names[i]));
     insert->Bind(3, light_field_.mask_names.empty() ? std::string_view()
                                                     : std::string_view(light_field_.mask_names[i]));

@@ -48,8 +48,8 @@ Result<Package> PackageOfFilm(LightField light_field, CameraPath path, const Ren
   WorkSettings work = options.work;
   if (options.signals != nullptr) work.stop = &options.signals->stop;
   const NeedsOptions needs = NeedsOfFilm(package, Resolved(film, package), work);
-  LF_ASSIGN_OR_RETURN(package.places, PlacesOfFilm(film.order, film.seed, package.light_field,
-                                                   package.path, needs, pool));
+  LF_ASSIGN_OR_RETURN(package.ranks, RanksOfFilm(film.order, film.seed, package.light_field,
+                                                 package.path, needs, pool));
   return package;
 }
 

@@ -54,7 +54,7 @@ RenderedFrame DevelopFrame(const PlateNotes& notes, const SensorPlate& plate,
   if (is_interrupted && is_interrupted()) return frame;
   frame.report = MakeFrameReport(notes.frame, notes.rays, frame.picture);
   frame.report.camera = InputsOfCamera(notes.frame, notes.camera, notes.shutter);
-  frame.report.places_done = notes.places_done;
+  frame.report.ranks_done = notes.ranks_done;
   if (notes.weighed) {
     const Image<float>& counts = notes.weighed->effective_counts;
     frame.report.weighed = {MedianOfSeen(counts.pixels()), notes.weighed->hat_share,

@@ -22,7 +22,7 @@ struct RenderedFrame {
 
 // Returns the notes from which DevelopFrame() makes the picture of the frame. The caller must still
 // set estimator, fps, shutter, develop.smooth_below and develop.fill_radius_px. It may set version,
-// places_done and the skipped LF images.
+// ranks_done and the skipped LF images.
 PlateNotes MakePlateNotes(FrameId frame, const RenderCamera& camera, const FrameRays& rays,
                           std::span<const FrameLens> lenses, const RadianceEncoding& encoding);
 

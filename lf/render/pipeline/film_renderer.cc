@@ -46,8 +46,8 @@ Result<void> FilmRenderer::Begin(const RunState* state, std::span<const FrameId>
   LF_RETURN_IF_ERROR(FindLenses());
   if (film_.max_image_count)
     setup_.pool().ForEach(frames_.size(), [this](size_t f) {
-      frames_[f].places = PlacesOfFirst(*film_.max_image_count, counted_index(),
-                                        TakingInstants(frames_[f]), select_);
+      frames_[f].ranks = RanksOfFirst(*film_.max_image_count, counted_index(),
+                                      TakingInstants(frames_[f]), select_);
     });
   if (film_.Rebins()) LF_RETURN_IF_ERROR(PrepareRebinning(state));
   if (film_.HasPlates()) LF_RETURN_IF_ERROR(PreparePlates(state));
@@ -60,11 +60,11 @@ Result<void> FilmRenderer::Begin(const RunState* state, std::span<const FrameId>
   collector_ = std::make_unique<FrameCollector>(
       setup_.light_field(), setup_.store(), FramesOfCollector(), images_, collect, setup_.pool());
   for (size_t i = 0; rebinned_ && i < rebinned_->section_count(); ++i)
-    saved_rays_places_.push_back(rebinned_->places_done(i));
+    saved_rays_ranks_.push_back(rebinned_->ranks_done(i));
   EndEarlyFrames();
   DecideStops();  // an earlier run may have ended exactly where the stop rule is applied
   for (size_t f = 0; film_.HasPlates() && f < frames_.size(); ++f)
-    if (!IsReleased(f)) frames_[f].saved_places = Progress(f).places_done;
+    if (!IsReleased(f)) frames_[f].saved_ranks = Progress(f).ranks_done;
   return {};
 }
 
@@ -90,7 +90,7 @@ Result<void> FilmRenderer::FindLenses() {
 // Returns the description of a frame by which selection finds the LF images whose rays have a
 // weight above 0 in a lens of the frame.
 TakingFrame FilmRenderer::Taking(const Frame& frame, const FrameLens& lens) const {
-  TakingFrame taking = {lens.camera(), frame.places};
+  TakingFrame taking = {lens.camera(), frame.ranks};
   if (film_.lens_weights != LensWeights::kNone || setup_.is_guarded())
     taking.takes = [&lens](LfImageId id) { return lens.Takes(id); };
   return taking;
@@ -121,13 +121,13 @@ CollectOptions FilmRenderer::OptionsOfCollector() const {
   collect.strict = work.strict;
   collect.whole_images = work.whole_images;
   collect.interrupted = work.interrupted;
-  collect.place_end = setup_.index().place_end();
-  collect.decision_places = 0;
+  collect.rank_end = setup_.index().rank_end();
+  collect.decision_ranks = 0;
   // The rays of all instants of a frame are collected before an interruption.
   collect.batch_frame_ray_count /= static_cast<uint64_t>(setup_.path().shutter.samples);
   if (rebinned_) {
     collect.consumer = rebinned_.get();
-    collect.decision_places = kDecisionPlaces;
+    collect.decision_ranks = kDecisionRanks;
   }
   return collect;
 }
@@ -137,7 +137,7 @@ std::vector<CollectedFrame> FilmRenderer::FramesOfCollector() {
   if (!film_.HasPlates()) return collected;
   for (Frame& frame : frames_) {
     const FrameLens& first = frame.lenses.front();
-    collected.push_back({first.camera(), &frame.plate, frame.places, WeightsIn(first)});
+    collected.push_back({first.camera(), &frame.plate, frame.ranks, WeightsIn(first)});
     for (const FrameLens& lens : std::span(frame.lenses).subspan(1))
       collected.back().further.push_back({lens.camera(), WeightsIn(lens)});
     if (setup_.is_guarded()) collected.back().guard = GuardOf(frame);
@@ -174,31 +174,31 @@ Result<void> FilmRenderer::PreparePlates(const RunState* state) {
     Frame& frame = frames_[f];
     if (setup_.work().IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
     if (frame.is_released) {
-      frame.places.begin = frame.places.end;
+      frame.ranks.begin = frame.ranks.end;
       continue;
     }
     LF_ASSIGN_OR_RETURN(const FrameProgress start, LoadPlate(&frame, state));
-    if (frame.is_early) frame.is_early = LacksRays(f, start.places_done);
-    if (frame.is_early) frame.places.end = std::min(frame.places.end, start.places_done);
-    frame.places.begin = start.places_done;
+    if (frame.is_early) frame.is_early = LacksRays(f, start.ranks_done);
+    if (frame.is_early) frame.ranks.end = std::min(frame.ranks.end, start.ranks_done);
+    frame.ranks.begin = start.ranks_done;
     frame.earlier_rays = start.rays;
   }
   return {};
 }
 
-// Returns true if the earlier run, which has done all LF images before places_done, has left LF
+// Returns true if the earlier run, which has done all LF images before ranks_done, has left LF
 // images that have rays for the frame. Such a frame is cut short if it is finished now. A frame
 // that has all its rays, for example if its development was interrupted, is finished as usual.
-bool FilmRenderer::LacksRays(size_t f, uint32_t places_done) const {
+bool FilmRenderer::LacksRays(size_t f, uint32_t ranks_done) const {
   const Frame& frame = frames_[f];
   std::vector<TakingFrame> taking;
   if (film_.Collects()) {
     taking = TakingInstants(frame);
     if (frame.all_lens) taking.push_back(Taking(frame, *frame.all_lens));
-    for (TakingFrame& instant : taking) instant.places = {places_done, frame.places.end};
+    for (TakingFrame& instant : taking) instant.ranks = {ranks_done, frame.ranks.end};
   }
   if (const RenderCamera* const reached = rebinned_ ? rebinned_->ReachedCamera(f) : nullptr)
-    taking.push_back({*reached, {rebinned_->places_done(), frame.places.end}});
+    taking.push_back({*reached, {rebinned_->ranks_done(), frame.ranks.end}});
   return !SelectImages(setup_.index(), taking, select_, setup_.pool()).empty();
 }
 
@@ -214,7 +214,7 @@ Result<FrameProgress> FilmRenderer::LoadPlate(Frame* frame, const RunState* stat
         start, state->LoadPlate(frame->id, &plate, film_.MeasuresNoise() ? &moments : nullptr));
   }
   if (!film_.MeasuresNoise()) return start;
-  frame->has_noise = moments || start.places_done == 0;
+  frame->has_noise = moments || start.ranks_done == 0;
   if (!frame->has_noise && !frame->is_early) {
     LogInfo("frame {} is started again, because its noise was not measured before",
             frame->id.value);
@@ -251,7 +251,7 @@ Result<void> FilmRenderer::PrepareRebinning(const RunState* state) {
     if (film_.Collects())
       collected = [&frame](LfImageId image) { return frame.lenses.front().WeightsOf(image); };
     LensGaps gaps(setup_.index(), setup_.path().Camera(frame.id), collected,
-                  !film_.Collects() || frame.lenses.front().tests_opening(), frame.places, select_,
+                  !film_.Collects() || frame.lenses.front().tests_opening(), frame.ranks, select_,
                   film_.rebin.query, setup_.pool(), setup_.package().CameraDistance(frame.id));
     LF_RETURN_IF_ERROR(CheckReach(gaps, frame.id));
     rebinned.push_back({frame.id, std::move(gaps)});
@@ -266,7 +266,7 @@ Result<void> FilmRenderer::PrepareRebinning(const RunState* state) {
     LF_ASSIGN_OR_RETURN(
         std::optional<RunState::Rays> rays,
         state->LoadRays(id(0), i, RaysFrames(), rebinned_->max_cells_per_section(), setup_.pool()));
-    if (rays) rebinned_->Restore(i, std::move(rays->map), rays->places_done);
+    if (rays) rebinned_->Restore(i, std::move(rays->map), rays->ranks_done);
   }
   return {};
 }
@@ -288,7 +288,7 @@ void FilmRenderer::SelectForFrames() {
   }
   if (film_.shard)
     std::erase_if(images_,
-                  [this](const SelectedImage& image) { return !film_.shard->Holds(image.place); });
+                  [this](const SelectedImage& image) { return !film_.shard->Holds(image.rank); });
   if (rebinned_) AddRebinnedImages();
 }
 
@@ -296,16 +296,16 @@ void FilmRenderer::AddRebinnedImages() {
   std::vector<TakingFrame> taking;
   for (size_t f = 0; f < frames_.size(); ++f)
     if (const RenderCamera* const reached = rebinned_->ReachedCamera(f))
-      taking.push_back({*reached, {rebinned_->places_done(), frames_[f].places.end}});
+      taking.push_back({*reached, {rebinned_->ranks_done(), frames_[f].ranks.end}});
   const auto is_before = [](const SelectedImage& a, const SelectedImage& b) {
-    return a.place < b.place;
+    return a.rank < b.rank;
   };
   std::vector<SelectedImage> all;
   const std::vector<SelectedImage> asked =
       SelectImages(setup_.index(), taking, select_, setup_.pool());
   for (SelectedImage image : asked) {
     if (std::binary_search(images_.begin(), images_.end(), image, is_before)) continue;
-    if (rebinned_->RectOf(image.id, image.place).empty()) continue;
+    if (rebinned_->RectOf(image.id, image.rank).empty()) continue;
     image.rect = {};  // none of its pixels is collected
     all.push_back(image);
   }
@@ -318,12 +318,12 @@ void FilmRenderer::AddRebinnedImages() {
 // or all of them, the frame is not finished early.
 void FilmRenderer::EndEarlyFrames() {
   if (film_.Collects()) return;
-  const uint32_t places_done = rebinned_->places_done();
+  const uint32_t ranks_done = rebinned_->ranks_done();
   for (size_t f = 0; f < frames_.size(); ++f) {
     Frame& frame = frames_[f];
     if (!frame.is_early || frame.is_released) continue;
-    frame.is_early = places_done > 0 && LacksRays(f, places_done);
-    if (frame.is_early) frame.places.end = places_done;
+    frame.is_early = ranks_done > 0 && LacksRays(f, ranks_done);
+    if (frame.is_early) frame.ranks.end = ranks_done;
   }
 }
 
@@ -343,28 +343,28 @@ CollectProgress FilmRenderer::total() const {
 }
 
 FrameProgress FilmRenderer::Progress(size_t f) const {
-  if (!film_.HasPlates()) return {rebinned_->places_done(), {}};
+  if (!film_.HasPlates()) return {rebinned_->ranks_done(), {}};
   FrameProgress progress = collector_->frames()[f].progress;
-  if (frames_[f].is_stopped) progress.places_done = frames_[f].next_decision;
+  if (frames_[f].is_stopped) progress.ranks_done = frames_[f].next_decision;
   progress.rays += frames_[f].earlier_rays;
   return progress;
 }
 
-uint32_t FilmRenderer::PlaceOfEnd(size_t f) const {
+uint32_t FilmRenderer::RankOfEnd(size_t f) const {
   const Frame& frame = frames_[f];
   return frame.is_stopped ? frame.next_decision
-                          : std::min(frame.places.end, setup_.index().place_end());
+                          : std::min(frame.ranks.end, setup_.index().rank_end());
 }
 
 // A frame that has all LF images that it takes is completed as at the end of the render
 // (kInTheEnd), even if it takes only a part of the light field. A frame that was stopped or is
-// finished early is completed at its last place. It has more gaps, because the LF images after this
-// place do not cover them.
+// finished early is completed at its last rank. It has more gaps, because the LF images after this
+// rank do not cover them.
 std::optional<Completion> FilmRenderer::Complete(size_t f) {
   if (!rebinned_) return std::nullopt;
-  const uint32_t done = Progress(f).places_done;
+  const uint32_t done = Progress(f).ranks_done;
   const bool is_all =
-      !frames_[f].is_early && done >= std::min(frames_[f].places.end, setup_.index().place_end());
+      !frames_[f].is_early && done >= std::min(frames_[f].ranks.end, setup_.index().rank_end());
   return rebinned_->Complete(f, is_all ? LensGaps::kInTheEnd : done);
 }
 
@@ -394,7 +394,7 @@ PlateNotes FilmRenderer::NotesOf(size_t f) const {
   notes.develop.smooth_below = film_.smooth_below;
   notes.develop.fill_radius_px = film_.fill_radius_px;
   notes.develop.adds_opacity = film_.adds_opacity;
-  if (frames_[f].is_early) notes.places_done = frames_[f].places.end;
+  if (frames_[f].is_early) notes.ranks_done = frames_[f].ranks.end;
   return notes;
 }
 

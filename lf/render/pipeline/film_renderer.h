@@ -8,7 +8,7 @@
 //   }
 //
 // Between two steps, every frame has exactly the rays of those LF images that it takes and whose
-// ranks in the order are below its FrameProgress::places_done. Frames have the same bits however
+// ranks in the order are below its FrameProgress::ranks_done. Frames have the same bits however
 // the work is divided into batches.
 #pragma once
 
@@ -86,10 +86,10 @@ class FilmRenderer final : public FrameSource {
   bool EndsEarly(size_t f) const override { return frames_[f].is_early; }
   // The frames that the stop rule has stopped.
   std::vector<size_t> StoppedFrames() const override;
-  // Returns the end (exclusive) of the frame's places in the order: the place where its stop rule
-  // stopped it, otherwise the end of the places that the frame takes. Does not depend on how the
+  // Returns the end (exclusive) of the frame's ranks in the order: the rank where its stop rule
+  // stopped it, otherwise the end of the ranks that the frame takes. Does not depend on how the
   // work is divided into batches.
-  uint32_t PlaceOfEnd(size_t f) const;
+  uint32_t RankOfEnd(size_t f) const;
 
   // Interpolates a frame from rebinned rays. Returns nullopt if the mode has none.
   std::optional<Completion> Complete(size_t f) override;
@@ -137,17 +137,17 @@ class FilmRenderer final : public FrameSource {
     SensorPlate plate{0, 0};
     NoiseMoments moments;  // moments of the plate; empty if noise is not measured
     // Places of the LF images that this run still collects. If there is an earlier run, the plate
-    // already has the rays of the LF images at places before places.begin.
-    PlaceRange places;
+    // already has the rays of the LF images at ranks before ranks.begin.
+    RankRange ranks;
     FrameRays earlier_rays;  // rays in the plate when this run began
-    // FilmSettings::stop_when is applied at places that are multiples of this number.
-    uint32_t decision_places = 0;
-    uint32_t next_decision = 0;  // next place at which the stop rule is applied
+    // FilmSettings::stop_when is applied at ranks that are multiples of this number.
+    uint32_t decision_ranks = 0;
+    uint32_t next_decision = 0;  // next rank at which the stop rule is applied
     bool is_released = false;
     bool is_stopped = false;  // true: stopped by its rule, with the LF images before next_decision
     bool has_noise = false;   // true if the moments include all LF images in the plate
     bool is_early = false;  // true: to be finished with the rays of the earlier run, as EndsEarly()
-    uint32_t saved_places = 0;  // FrameProgress::places_done of the plate in the state on the disk
+    uint32_t saved_ranks = 0;  // FrameProgress::ranks_done of the plate in the state on the disk
     std::unique_ptr<ReachableElements> reachable;
   };
 
@@ -165,7 +165,7 @@ class FilmRenderer final : public FrameSource {
   Result<void> CheckReach(const LensGaps& gaps, FrameId frame) const;
   Result<void> PreparePlates(const RunState* state);
   Result<FrameProgress> LoadPlate(Frame* frame, const RunState* state) const;
-  bool LacksRays(size_t f, uint32_t places_done) const;
+  bool LacksRays(size_t f, uint32_t ranks_done) const;
   void SelectForFrames();
   void AddRebinnedImages();
   CollectOptions OptionsOfCollector() const;
@@ -178,10 +178,10 @@ class FilmRenderer final : public FrameSource {
   const ReachableElements& ReachableOf(size_t f);
   Result<void> PrepareStops(CollectOptions* collect);
   void ForgetRaysAhead();
-  uint32_t PlacesCovered(uint32_t places_done) const;
+  uint32_t RanksCovered(uint32_t ranks_done) const;
   double NoiseOf(size_t f);
   bool IsEnough(size_t f);
-  uint32_t DecisionFrom(size_t f, uint32_t place) const;
+  uint32_t DecisionFrom(size_t f, uint32_t rank) const;
   void DecideStops();
 
   std::unique_ptr<FilmSetup> own_setup_;  // setup of a renderer made by Open(); otherwise null
@@ -191,8 +191,8 @@ class FilmRenderer final : public FrameSource {
   std::vector<Frame> frames_;
   std::vector<SelectedImage> images_;
   std::unique_ptr<FrameCollector> collector_;
-  std::unique_ptr<RebinnedRays> rebinned_;   // the rebinned rays; null if the mode has none
-  std::vector<uint32_t> saved_rays_places_;  // places_done of each section in the state on the disk
+  std::unique_ptr<RebinnedRays> rebinned_;  // the rebinned rays; null if the mode has none
+  std::vector<uint32_t> saved_rays_ranks_;  // ranks_done of each section in the state on the disk
   CollectProgress done_;
 };
 

@@ -30,9 +30,9 @@ std::string FilmRenderer::RaysFrames() const {
 Result<void> FilmRenderer::Save(RunState* state) {
   std::vector<size_t> changed;
   for (size_t f = 0; f < frames_.size(); ++f)
-    if (!IsReleased(f) && Progress(f).places_done != frames_[f].saved_places) changed.push_back(f);
+    if (!IsReleased(f) && Progress(f).ranks_done != frames_[f].saved_ranks) changed.push_back(f);
   if (film_.HasPlates()) LF_RETURN_IF_ERROR(SavePlates(state, changed));
-  for (const size_t f : changed) frames_[f].saved_places = Progress(f).places_done;
+  for (const size_t f : changed) frames_[f].saved_ranks = Progress(f).ranks_done;
   return SaveRays(state);
 }
 
@@ -52,12 +52,12 @@ Result<void> FilmRenderer::SavePlates(RunState* state, std::span<const size_t> f
 }
 
 Result<void> FilmRenderer::SaveRays(RunState* state) {
-  for (size_t i = 0; i < saved_rays_places_.size(); ++i) {
-    const uint32_t places_done = rebinned_->places_done(i);
-    if (places_done == saved_rays_places_[i]) continue;
+  for (size_t i = 0; i < saved_rays_ranks_.size(); ++i) {
+    const uint32_t ranks_done = rebinned_->ranks_done(i);
+    if (ranks_done == saved_rays_ranks_[i]) continue;
     LF_RETURN_IF_ERROR(
-        state->SaveRays(id(0), i, RaysFrames(), rebinned_->map(i), places_done, setup_.pool()));
-    saved_rays_places_[i] = places_done;
+        state->SaveRays(id(0), i, RaysFrames(), rebinned_->map(i), ranks_done, setup_.pool()));
+    saved_rays_ranks_[i] = ranks_done;
   }
   return {};
 }
@@ -87,14 +87,14 @@ Result<void> FilmRenderer::WritePlateOf(size_t f, const std::filesystem::path& p
                                         const RunState& state, PlateNotes notes,
                                         std::span<const SkippedImage> skipped) const {
   FrameProgress progress = Progress(f);
-  progress.places_done = PlaceOfEnd(f);  // must not depend on the division into passes
+  progress.ranks_done = RankOfEnd(f);  // must not depend on the division into passes
   PlateEntries text = state.PlateText(id(f), progress, moments(f));
   std::vector<const FrameLens*> of_frame;
   for (const FrameLens& lens : lenses(f)) of_frame.push_back(&lens);
   if (const FrameLens* const all = all_lens(f)) of_frame.push_back(all);
   notes.skipped = SkippedOf(
       skipped, setup_.index(),
-      {std::move(of_frame), {0, progress.places_done}, setup_.Select().reach, film_.shard});
+      {std::move(of_frame), {0, progress.ranks_done}, setup_.Select().reach, film_.shard});
   notes.skipped_count = notes.skipped.size();
   for (auto& entry : TextOf(notes)) text.push_back(std::move(entry));
   if (film_.shard) text.emplace_back("shard", film_.shard->Text());

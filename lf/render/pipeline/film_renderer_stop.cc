@@ -17,7 +17,7 @@ const ReachableElements& FilmRenderer::ReachableOf(size_t f) {
       if (film_.lens_weights != LensWeights::kNone || setup_.is_guarded())
         weights = [&lens](LfImageId id) { return lens.WeightsOf(id); };
       auto reachable = std::make_unique<ReachableElements>(counted_index(), lens.camera(),
-                                                           PlaceRange{0, frame.places.end}, select_,
+                                                           RankRange{0, frame.ranks.end}, select_,
                                                            film_.reading, setup_.pool(), weights);
       if (frame.reachable)
         frame.reachable->Join(*reachable);
@@ -28,8 +28,8 @@ const ReachableElements& FilmRenderer::ReachableOf(size_t f) {
   return *frame.reachable;
 }
 
-// Makes batches end at the places where the stop rule of a frame is applied, in addition to the
-// places that rebinned rays need.
+// Makes batches end at the ranks where the stop rule of a frame is applied, in addition to the
+// ranks that rebinned rays need.
 Result<void> FilmRenderer::PrepareStops(CollectOptions* collect) {
   collect->cuts_for_noise = film_.stop_when.noise.has_value();
   for (size_t f = 0; f < frames_.size(); ++f) {
@@ -38,25 +38,25 @@ Result<void> FilmRenderer::PrepareStops(CollectOptions* collect) {
     if (frame.is_released) continue;
     const ReachableElements& reachable = ReachableOf(f);
     if (film_.stop_when.samples) {
-      // Batches end at the multiples of the smallest decision_places of all frames. The
-      // decision_places of each frame is a multiple of this smallest one.
-      frame.decision_places = DecisionPlaces(setup_.index().place_end(), reachable.image_count());
-      collect->decision_places = collect->decision_places == 0
-                                     ? frame.decision_places
-                                     : std::min(collect->decision_places, frame.decision_places);
+      // Batches end at the multiples of the smallest decision_ranks of all frames. The
+      // decision_ranks of each frame is a multiple of this smallest one.
+      frame.decision_ranks = DecisionRanks(setup_.index().rank_end(), reachable.image_count());
+      collect->decision_ranks = collect->decision_ranks == 0
+                                    ? frame.decision_ranks
+                                    : std::min(collect->decision_ranks, frame.decision_ranks);
     }
-    frame.next_decision = DecisionFrom(f, std::max(frame.places.begin, 1U));
+    frame.next_decision = DecisionFrom(f, std::max(frame.ranks.begin, 1U));
   }
   if (setup_.work().IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
   return {};
 }
 
-// Returns the first place at or after `place` where the stop rule of the frame is applied. `place`
+// Returns the first rank at or after `rank` where the stop rule of the frame is applied. `rank`
 // must be above 0.
-uint32_t FilmRenderer::DecisionFrom(size_t f, uint32_t place) const {
-  if (film_.stop_when.noise) return NoiseDecisionAfter(place - 1);
-  const uint32_t step = frames_[f].decision_places;
-  return (place + step - 1) / step * step;
+uint32_t FilmRenderer::DecisionFrom(size_t f, uint32_t rank) const {
+  if (film_.stop_when.noise) return NoiseDecisionAfter(rank - 1);
+  const uint32_t step = frames_[f].decision_ranks;
+  return (rank + step - 1) / step * step;
 }
 
 // A frame that stops must be completed with rebinned rays of exactly the LF images in its plate. In
@@ -66,9 +66,9 @@ uint32_t FilmRenderer::DecisionFrom(size_t f, uint32_t place) const {
 void FilmRenderer::ForgetRaysAhead() {
   uint32_t least = UINT32_MAX;
   for (const Frame& frame : frames_)
-    if (!frame.is_released) least = std::min(least, frame.places.begin);
+    if (!frame.is_released) least = std::min(least, frame.ranks.begin);
   for (size_t i = 0; i < rebinned_->section_count(); ++i) {
-    if (rebinned_->places_done(i) <= least) continue;
+    if (rebinned_->ranks_done(i) <= least) continue;
     LogInfo(
         "rebinned rays are made again, because they were made from more LF images than a frame has "
         "collected");
@@ -76,14 +76,14 @@ void FilmRenderer::ForgetRaysAhead() {
   }
 }
 
-// Returns the place of the first LF image to be loaded at or after places_done; place_end() if
-// there is none. A frame that is done up to places_done is also done up to the returned place,
+// Returns the rank of the first LF image to be loaded at or after ranks_done; rank_end() if
+// there is none. A frame that is done up to ranks_done is also done up to the returned rank,
 // because no LF image to be loaded lies between.
-uint32_t FilmRenderer::PlacesCovered(uint32_t places_done) const {
-  const auto next = std::lower_bound(
-      images_.begin(), images_.end(), places_done,
-      [](const SelectedImage& image, uint32_t place) { return image.place < place; });
-  return next == images_.end() ? setup_.index().place_end() : next->place;
+uint32_t FilmRenderer::RanksCovered(uint32_t ranks_done) const {
+  const auto next =
+      std::lower_bound(images_.begin(), images_.end(), ranks_done,
+                       [](const SelectedImage& image, uint32_t rank) { return image.rank < rank; });
+  return next == images_.end() ? setup_.index().rank_end() : next->rank;
 }
 
 // Returns the noise of a frame in radiance, with the light field's white as 1; infinity if the
@@ -99,8 +99,8 @@ bool FilmRenderer::IsEnough(size_t f) {
 }
 
 // Applies the stop rule to every frame that has reached its next_decision. The plate then has
-// exactly the rays of the LF images before this place, because no batch extends beyond such a
-// place, and places without an LF image to be loaded add nothing. Decisions therefore do not depend
+// exactly the rays of the LF images before this rank, because no batch extends beyond such a
+// rank, and ranks without an LF image to be loaded add nothing. Decisions therefore do not depend
 // on the LF images that other frames take. If an interrupted earlier run has decided already, the
 // decision is the same.
 void FilmRenderer::DecideStops() {
@@ -109,15 +109,15 @@ void FilmRenderer::DecideStops() {
     Frame& frame = frames_[f];
     // The rule is not applied to a frame that is finished early.
     if (frame.is_released || frame.is_early || frame.is_stopped) continue;
-    const uint32_t covered = PlacesCovered(collector_->frames()[f].progress.places_done);
+    const uint32_t covered = RanksCovered(collector_->frames()[f].progress.ranks_done);
     if (covered < frame.next_decision) continue;
-    // After an interruption, rebinned rays must catch up to the place where the frame may stop.
-    if (rebinned_ && PlacesCovered(rebinned_->places_done()) < frame.next_decision) continue;
+    // After an interruption, rebinned rays must catch up to the rank where the frame may stop.
+    if (rebinned_ && RanksCovered(rebinned_->ranks_done()) < frame.next_decision) continue;
     if (!IsEnough(f)) {
       frame.next_decision = DecisionFrom(f, covered + 1);
       continue;
     }
-    LogDebug("frame {}: the stop rule is met at place {}", frame.id.value, frame.next_decision);
+    LogDebug("frame {}: the stop rule is met at rank {}", frame.id.value, frame.next_decision);
     collector_->Stop(f);
     frame.is_stopped = true;
   }
@@ -140,7 +140,7 @@ Result<void> FilmRenderer::Measure(size_t f, FrameReport* report) {
     FrameNoise& measured = report->noise.emplace();
     measured.asked = *noise;
     if (const double reached = NoiseOf(f); std::isfinite(reached)) measured.reached = reached;
-    measured.places = PlaceOfEnd(f);
+    measured.ranks = RankOfEnd(f);
     measured.image_count = Progress(f).rays.image_count;
   }
   if ((samples || noise) && setup_.work().IsStopped())

@@ -176,14 +176,14 @@ TEST_F(FilmRendererTest, RulesAndLimitsHoldForAShutter) {
   ASSERT_TRUE(renderer->Measure(1, &report));
   ASSERT_TRUE(report.noise && report.noise->reached);
   EXPECT_LE(report.noise.value().reached.value(), 0.08);
-  EXPECT_LT(renderer->PlaceOfEnd(1), 144u);
+  EXPECT_LT(renderer->RankOfEnd(1), 144u);
   ExpectSame(OfFolder(renderer->id(1)), renderer->Develop(1).picture.rgb);
   options_.stop_when.noise.reset();
   options_.stop_when.samples = 12;  // four at each instant
   renderer = Open();
   Finish(*renderer);
   EXPECT_EQ(renderer->StoppedFrames(), (std::vector<size_t>{0, 1, 2}));
-  EXPECT_LT(renderer->PlaceOfEnd(1), 144u);
+  EXPECT_LT(renderer->RankOfEnd(1), 144u);
 }
 
 TEST_F(FilmRendererTest, RebinnedRaysRefuseAShutter) {
@@ -211,7 +211,7 @@ TEST_F(FilmRendererTest, StopRulesAreThoseOfAFolder) {
   const auto renderer = Open();
   Finish(*renderer);
   EXPECT_EQ(renderer->StoppedFrames(), (std::vector<size_t>{0, 1, 2}));
-  EXPECT_LT(renderer->PlaceOfEnd(1), 144u);
+  EXPECT_LT(renderer->RankOfEnd(1), 144u);
   FrameReport report;
   ASSERT_TRUE(renderer->Measure(1, &report));
   EXPECT_GE(report.samples.value().measured.share, kMostElements);
@@ -275,7 +275,7 @@ TEST_F(FilmRendererTest, AFrameThatHasAllItsRaysIsNotCutShort) {
     ASSERT_TRUE(renderer.Begin(earlier.get(), kThird));
     EXPECT_FALSE(renderer.EndsEarly(2));
     Finish(renderer);
-    EXPECT_FALSE(renderer.NotesOf(2).places_done);
+    EXPECT_FALSE(renderer.NotesOf(2).ranks_done);
     EXPECT_EQ(renderer.Develop(2).picture.rgb.pixels(), whole->Develop(2).picture.rgb.pixels());
   }
 }

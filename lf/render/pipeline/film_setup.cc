@@ -46,7 +46,7 @@ FilmSetup::FilmSetup(Package package, const FilmSettings& film, const WorkSettin
       work_(work),
       frames_(frames.empty() ? package_.FrameIds() : std::move(frames)),
       pool_(pool),
-      index_(package_.light_field, package_.places) {}
+      index_(package_.light_field, package_.ranks) {}
 
 Result<std::unique_ptr<FilmSetup>> FilmSetup::Make(Package package, const FilmSettings& film,
                                                    const WorkSettings& work,

@@ -49,7 +49,7 @@ struct FolderOptions {
   bool resume = false;     // true: continues from the state in the folder
   bool overwrite = false;  // true: removes the state in the folder
   // Frames to finish at once, with the rays that the state in the folder already has of each. The
-  // report of such a frame says at which place of the order it ended. A frame without rays in the
+  // report of such a frame says at which rank of the order it ended. A frame without rays in the
   // state is rendered as usual. Needs `resume`; must be empty for a shard.
   std::vector<FrameId> finish_early = {};  // ascending
   // Version of the program, for the metadata of the files. RenderFilm() sets it.

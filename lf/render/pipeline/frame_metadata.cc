@@ -145,8 +145,8 @@ ImageMetadata FileMetadata(const PlateNotes& notes, FrameFormat format, ColourSp
                                          notes.fps, notes.version, notes.shutter);
   if (const std::string digest = notes.FocalSurface(); !digest.empty())
     metadata.emplace_back("lf:focal_surface", digest);
-  if (notes.places_done)
-    metadata.emplace_back("lf:finished_early_before_rank", static_cast<int>(*notes.places_done));
+  if (notes.ranks_done)
+    metadata.emplace_back("lf:finished_early_before_rank", static_cast<int>(*notes.ranks_done));
   if (!IsExr(format)) return metadata;
   for (auto& entry :
        StandardAttributes(notes.frame, notes.camera, notes.fps, colours, notes.shutter))

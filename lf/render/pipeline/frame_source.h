@@ -47,7 +47,7 @@ class FrameSource {
   // Collects the next batch of LF images. Returns false if no LF image was left. After
   // kInterrupted, the caller may call Step() again.
   virtual Result<bool> Step() = 0;
-  // The LF images that all steps together read, by ascending places.
+  // The LF images that all steps together read, by ascending ranks.
   virtual const std::vector<SelectedImage>& images() const = 0;
   // Progress of the steps so far, and after the last one.
   virtual CollectProgress progress() const = 0;

@@ -64,7 +64,7 @@ Result<void> RenderPass::FinishEarlyFrames() {
       continue;
     if (source_->EndsEarly(f))
       early.push_back(f);
-    else if (source_->Progress(f).places_done == 0)
+    else if (source_->Progress(f).ranks_done == 0)
       LogWarning(
           "{{finish}}: frame {} has no rays yet, and is therefore rendered from all of its LF "
           "images",

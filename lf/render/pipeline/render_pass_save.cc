@@ -37,7 +37,7 @@ Result<void> RenderPass::SavePictures(double picture_budget_s) {
   if (picture_budget_s <= 0) return {};
   std::vector<size_t> oldest_first;
   for (size_t f = 0; f < pictures_s_.size(); ++f)
-    if (!source_->IsReleased(f) && source_->Progress(f).places_done > 0) oldest_first.push_back(f);
+    if (!source_->IsReleased(f) && source_->Progress(f).ranks_done > 0) oldest_first.push_back(f);
   std::stable_sort(oldest_first.begin(), oldest_first.end(),
                    [this](size_t a, size_t b) { return pictures_s_[a] < pictures_s_[b]; });
   const double begin_s = NowSeconds();

@@ -11,8 +11,8 @@ namespace lf {
 namespace {
 
 bool Takes(const FrameTakes& frame, const ImageIndex& index, LfImageId id) {
-  const uint32_t place = index.PlaceOf(id);
-  if (!frame.places.Holds(place) || (frame.shard && !frame.shard->Holds(place))) return false;
+  const uint32_t rank = index.RankOf(id);
+  if (!frame.ranks.Holds(rank) || (frame.shard && !frame.shard->Holds(rank))) return false;
   const PinholeCamera camera = index.light_field().Camera(id);
   std::vector<IdealCell> cells;
   if (camera.intrinsics.has_distortion()) cells = MakeIdealCells(camera.intrinsics);

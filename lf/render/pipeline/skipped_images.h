@@ -18,7 +18,7 @@ namespace lf {
 // The properties of a frame that decide which LF images it takes.
 struct FrameTakes {
   std::vector<const FrameLens*> lenses;  // the frame takes an LF image if any of them does
-  PlaceRange places;
+  RankRange ranks;
   PixelReach reach = PixelReach::kOwn;
   std::optional<Shard> shard;  // shard of the render; unset: all LF images
 };

@@ -63,10 +63,10 @@ struct FilmSettings {
 
   // A frame is finished when this rule is met.
   //   samples  its elements have this number of rays (HasSamples()). The rule is applied only at
-  //            places of the order that are multiples of 64 (of 128, 256, ... if a frame takes only
+  //            ranks of the order that are multiples of 64 (of 128, 256, ... if a frame takes only
   //            a part of the LF images), so that the frame has the same bits in any run.
   //   noise    its noise is at most this (render/collect/noise_rule.h), in linear radiance where
-  //            the light field's white is 1. The rule is applied at the places that
+  //            the light field's white is 1. The rule is applied at the ranks that
   //            NoiseDecisionAfter() gives. It can be combined with every mode, estimator, filter
   //            and weights: with kRebin, frames collect rays only to measure the noise, and their
   //            pictures do not use these rays.

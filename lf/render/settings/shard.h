@@ -10,14 +10,14 @@
 
 namespace lf {
 
-// Shard `number` of `count` shards, from 1 to `count`, has the LF images at the places number - 1,
+// Shard `number` of `count` shards, from 1 to `count`, has the LF images at the ranks number - 1,
 // number - 1 + count, ... of the order.
 struct Shard {
   static constexpr uint32_t kMost = 100000;
   uint32_t number = 1;
   uint32_t count = 1;
 
-  bool Holds(uint32_t place) const { return place % count == number - 1; }
+  bool Holds(uint32_t rank) const { return rank % count == number - 1; }
   std::string Text() const { return std::to_string(number) + "/" + std::to_string(count); }
   // Returns the name of the shard's folder.
   std::string Name() const {

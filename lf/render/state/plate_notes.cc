@@ -198,8 +198,8 @@ PlateEntries TextOf(const PlateNotes& notes) {
                                   notes.shutter->shutter.samples, notes.shutter->cameras));
   if (notes.rays.virtual_count > 0)
     text.emplace_back("plate.virtual_lf_images", fmt::format("{}", notes.rays.virtual_count));
-  if (notes.places_done)
-    text.emplace_back("plate.finished_early", fmt::format("{}", *notes.places_done));
+  if (notes.ranks_done)
+    text.emplace_back("plate.finished_early", fmt::format("{}", *notes.ranks_done));
   if (notes.skipped_count > 0) {
     text.emplace_back("plate.lf_images_skipped", fmt::format("{}", notes.skipped_count));
     text.emplace_back("plate.skipped", NamesText(notes.skipped));
@@ -301,7 +301,7 @@ Result<PlateNotes> PlateNotesOf(const PlateEntries& entries, int width_px, int h
   if (FindEntry(entries, "plate.virtual_lf_images") != nullptr)
     notes.rays.virtual_count = reader.WholeNumber("plate.virtual_lf_images", UINT32_MAX);
   if (FindEntry(entries, "plate.finished_early") != nullptr)
-    notes.places_done =
+    notes.ranks_done =
         static_cast<uint32_t>(reader.WholeNumber("plate.finished_early", UINT32_MAX));
   if (FindEntry(entries, "plate.lf_images_skipped") != nullptr) {
     notes.skipped_count = reader.WholeNumber("plate.lf_images_skipped", UINT32_MAX);

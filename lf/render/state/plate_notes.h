@@ -35,9 +35,9 @@ struct PlateNotes {
   Estimator estimator = Estimator::kBilinear;
   std::string version;  // version of the program
   FrameRays rays;       // rays in the plate
-  // If set, the frame was finished early: its plate has only the LF images before this place of the
+  // If set, the frame was finished early: its plate has only the LF images before this rank of the
   // order.
-  std::optional<uint32_t> places_done = std::nullopt;
+  std::optional<uint32_t> ranks_done = std::nullopt;
   // Number and names of the LF images that the frame should have, but that are missing or broken.
   // TextOf() writes only the first names, up to 256 KiB.
   uint64_t skipped_count = 0;

@@ -37,14 +37,14 @@ Json FrameToJson(const FrameReport& frame) {
     json["uncovered_share"] = frame.weighed->coverage.uncovered_share;
     json["fitting_aperture_w"] = frame.weighed->coverage.fitting_diameter_w;
   }
-  if (frame.places_done) json["finished_early_before_rank"] = *frame.places_done;
+  if (frame.ranks_done) json["finished_early_before_rank"] = *frame.ranks_done;
   if (frame.samples)
     json["samples"] = {{"asked", frame.samples->asked},
                        {"share", frame.samples->measured.share},
                        {"most_have", frame.samples->measured.most_have}};
   if (frame.noise) {
     Json& noise = json["noise"] = {{"asked", frame.noise->asked},
-                                   {"ranks", frame.noise->places},
+                                   {"ranks", frame.noise->ranks},
                                    {"lf_images", frame.noise->image_count}};
     if (frame.noise->reached) noise["reached"] = *frame.noise->reached;
   }

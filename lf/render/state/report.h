@@ -34,8 +34,8 @@ struct FrameSamples {
 struct FrameNoise {
   double asked = 0;               // X of the rule, in linear radiance
   std::optional<double> reached;  // unset: cannot be measured (MeasureNoise() is infinite)
-  uint32_t places = 0;            // the LF images before this place of the order were collected
-  uint64_t image_count = 0;       // number of LF images before `places` with rays in the frame
+  uint32_t ranks = 0;             // the LF images before this rank of the order were collected
+  uint64_t image_count = 0;       // number of LF images before `ranks` with rays in the frame
 };
 
 // Report of one finished frame.
@@ -62,8 +62,8 @@ struct FrameReport {
   };
   std::optional<Weighed> weighed = std::nullopt;
   // If set, the frame was finished early (FolderOptions::finish_early): it has only the LF images
-  // before this place of the order.
-  std::optional<uint32_t> places_done = std::nullopt;
+  // before this rank of the order.
+  std::optional<uint32_t> ranks_done = std::nullopt;
   // The share of the picture that is interpolated from rebinned rays; unset if the mode has none.
   std::optional<double> interpolated_share = std::nullopt;
   // Set if a rule "noise<=X" was given, unless the frame was finished early from a plate without

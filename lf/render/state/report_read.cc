@@ -34,7 +34,7 @@ FrameReport FrameFromJson(const Json& json, std::string* fault) {
     frame.weighed = weighed;
   }
   if (fields.Find("finished_early_before_rank") != nullptr)
-    fields.Get("finished_early_before_rank", &frame.places_done.emplace());
+    fields.Get("finished_early_before_rank", &frame.ranks_done.emplace());
   if (const Json* samples = fields.Find("samples")) {
     RecordFields sample_fields(*samples, fault);
     frame.samples.emplace();
@@ -46,7 +46,7 @@ FrameReport FrameFromJson(const Json& json, std::string* fault) {
     RecordFields noise_fields(*noise, fault);
     frame.noise.emplace();
     noise_fields.Get("asked", &frame.noise->asked);
-    noise_fields.Get("ranks", &frame.noise->places);
+    noise_fields.Get("ranks", &frame.noise->ranks);
     noise_fields.Get("lf_images", &frame.noise->image_count);
     if (noise_fields.Find("reached") != nullptr)
       noise_fields.Get("reached", &frame.noise->reached.emplace());

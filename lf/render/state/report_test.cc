@@ -100,7 +100,7 @@ TEST(Report, ReadsBackWhatItWrote) {
   EXPECT_EQ(read->frames[0].samples->measured.most_have, 3u);
   EXPECT_EQ(read->frames[0].noise->asked, 0.002);
   EXPECT_EQ(read->frames[0].noise->reached, 0.0019);
-  EXPECT_EQ(read->frames[0].noise->places, 72u);
+  EXPECT_EQ(read->frames[0].noise->ranks, 72u);
   EXPECT_EQ(read->frames[0].noise->image_count, 70u);
   EXPECT_FALSE(read->frames[1].noise);
   EXPECT_EQ(read->frames[0].camera, frame.camera);

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kProgress = "progress.";
-constexpr const char* kPlacesDone = "progress.ranks_done";
+constexpr const char* kRanksDone = "progress.ranks_done";
 constexpr const char* kNoise = "progress.noise";
 constexpr const char* kRaysExtension = ".rays";
 constexpr const char* kRaysFrames = "rays.frames";
@@ -350,7 +350,7 @@ Result<void> RunState::Check(const std::string& place, FrameId frame, const RunI
 PlateEntries RunState::PlateText(FrameId frame, const FrameProgress& progress,
                                  const NoiseMoments* moments) const {
   PlateEntries text = Joined(options_.rays, InputsOfFrame(path_, frame));
-  text.emplace_back(kPlacesDone, fmt::format("{}", progress.places_done));
+  text.emplace_back(kRanksDone, fmt::format("{}", progress.ranks_done));
   text.emplace_back("progress.lf_images", fmt::format("{}", progress.rays.image_count));
   text.emplace_back("progress.rays_tested", fmt::format("{}", progress.rays.tested_count));
   text.emplace_back("progress.rays_accepted", fmt::format("{}", progress.rays.accepted_count));
@@ -369,7 +369,7 @@ Result<FrameProgress> RunState::LoadPlate(FrameId frame, SensorPlate* plate,
   const auto get = [&](const char* key, auto* value) {
     return NumberOf(path, reader.entries(), key, kPlateAdvice, value);
   };
-  LF_RETURN_IF_ERROR(get(kPlacesDone, &progress.places_done));
+  LF_RETURN_IF_ERROR(get(kRanksDone, &progress.ranks_done));
   LF_RETURN_IF_ERROR(get("progress.lf_images", &progress.rays.image_count));
   LF_RETURN_IF_ERROR(get("progress.rays_tested", &progress.rays.tested_count));
   LF_RETURN_IF_ERROR(get("progress.rays_accepted", &progress.rays.accepted_count));
@@ -430,15 +430,15 @@ Result<std::optional<RunState::Rays>> RunState::LoadRays(FrameId first, size_t s
   if (!file && file.error().kind == ErrorKind::kUsage) return file.error();
   if (!file) return WithAdvice(file.error(), kRaysAdvice);
   Rays rays{std::move(file->map), 0};
-  LF_RETURN_IF_ERROR(NumberOf(path, file->entries, kPlacesDone, kRaysAdvice, &rays.places_done));
+  LF_RETURN_IF_ERROR(NumberOf(path, file->entries, kRanksDone, kRaysAdvice, &rays.ranks_done));
   return std::optional<Rays>(std::move(rays));
 }
 
 Result<void> RunState::SaveRays(FrameId first, size_t section, const std::string& frames,
-                                const RayMap& map, uint32_t places_done, ThreadPool& pool) {
+                                const RayMap& map, uint32_t ranks_done, ThreadPool& pool) {
   PlateEntries text = options_.rays;
   text.emplace_back(kRaysFrames, frames);
-  text.emplace_back(kPlacesDone, fmt::format("{}", places_done));
+  text.emplace_back(kRanksDone, fmt::format("{}", ranks_done));
   LF_RETURN_IF_ERROR(WriteRays(RaysPath(first, section), text, map, pool));
   has_rays_ = true;
   return {};

@@ -108,12 +108,12 @@ class RunState {
   // or has more than max_cells cells.
   struct Rays {
     RayMap map;
-    uint32_t places_done = 0;
+    uint32_t ranks_done = 0;
   };
   Result<std::optional<Rays>> LoadRays(FrameId first, size_t section, const std::string& frames,
                                        size_t max_cells, ThreadPool& pool) const;
   Result<void> SaveRays(FrameId first, size_t section, const std::string& frames, const RayMap& map,
-                        uint32_t places_done, ThreadPool& pool);
+                        uint32_t ranks_done, ThreadPool& pool);
   void RemoveRays();  // removes the rebinned rays of all passes
 
   Result<void> SaveTotals(const RenderReport& totals);

@@ -81,11 +81,11 @@ TEST_F(RunStateTest, GoesOnWhereItWas) {
   SensorPlate plate(80, 60);
   const Result<FrameProgress> progress = (*state)->LoadPlate(FrameId{2}, &plate);
   ASSERT_TRUE(progress);
-  EXPECT_EQ(progress->places_done, 128u);
+  EXPECT_EQ(progress->ranks_done, 128u);
   EXPECT_EQ(progress->rays.tested_count, 5000u);
   EXPECT_EQ(plate, plate_);
   SensorPlate fresh(80, 60);
-  EXPECT_EQ((*state)->LoadPlate(FrameId{1}, &fresh)->places_done, 0u);
+  EXPECT_EQ((*state)->LoadPlate(FrameId{1}, &fresh)->ranks_done, 0u);
 }
 
 TEST_F(RunStateTest, LeavesNothingWhenAllIsDone) {
@@ -256,7 +256,7 @@ TEST_F(RunStateTest, RebinnedRaysAreThoseOfTheSameFrames) {
   const auto rays = (*state)->LoadRays(FrameId{1}, 0, "1-3", 1000, pool_);
   ASSERT_TRUE(rays) << rays.error().message;
   ASSERT_TRUE(rays->has_value());
-  EXPECT_EQ((*rays)->places_done, 128u);
+  EXPECT_EQ((*rays)->ranks_done, 128u);
   EXPECT_EQ((*rays)->map.size(), 1u);
   const auto others = (*state)->LoadRays(FrameId{1}, 0, "1", 1000, pool_);
   ASSERT_FALSE(others);
