@@ -13,6 +13,10 @@ namespace lf {
 
 void FrameArgument::AddTo(OptionGroup& input) {
   input.Add("PATH", path, kPathHelp)->required();
+  AddNumberTo(input);
+}
+
+void FrameArgument::AddNumberTo(OptionGroup& input) {
   input.Add("--frame N", frame, "Frame of PATH whose camera is used, from 1")
       ->check(CLI::Range(1, kMostFrames));
 }

@@ -22,6 +22,7 @@ struct FrameArgument {
   FrameId id() const { return FrameId{frame}; }
   // Adds the positional argument PATH, and --frame N.
   void AddTo(OptionGroup& input);
+  void AddNumberTo(OptionGroup& input);  // --frame N alone
   // Opens the path for a light field. kUsage: the path has no such frame. Other errors are those of
   // OpenPath().
   //   surface  use of a focal surface that the path may have

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -13,17 +14,13 @@
 #include <utility>
 #include <vector>
 
-#include "tools/common/allow_missing.h"
-#include "tools/common/frame_options.h"
 #include "tools/common/interrupt.h"
-#include "tools/common/light_field_argument.h"
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
-#include "tools/common/setting_options.h"
-#include "tools/common/validators.h"
 #include "tools/focus_frame.h"
 #include "tools/render_end.h"
 #include "tools/render_summary.h"
+#include "tools/through_arguments.h"
 
 #include "lf/analysis/lens_statistics/lens_statistics.h"
 #include "lf/analysis/lens_statistics/statistic_film.h"
@@ -38,6 +35,7 @@
 #include "lf/render/pipeline/check_outputs.h"
 #include "lf/render/pipeline/frame_output.h"
 #include "lf/render/pipeline/render.h"
+#include "lf/render/pipeline/render_packages.h"
 #include "lf/render/state/other_films.h"
 #include "lf/render/state/record_fields.h"
 
@@ -49,11 +47,13 @@ namespace fs = std::filesystem;
 constexpr HelpTexts kHelp = {
     .summary = "Sees through leaves and rain: a statistic over the lens instead of the mean.",
     .usage = R"(  lffocus through LIGHTFIELD PATH -o FILE [-o FILE...] [OPTIONS]
-  lffocus through LIGHTFIELD PATH -o FOLDER [OPTIONS])",
+  lffocus through LIGHTFIELD PATH -o FOLDER [OPTIONS]
+  lffocus through LIGHTFIELD PACKAGE... -o FOLDER [OPTIONS])",
     .examples = R"(  lffocus through capture/ path.yaml -o seen.exr
   lffocus through capture/ path.yaml --frame 12 -o seen.png --statistic min
   lffocus through capture/ path.yaml --frames 1-100 -o seen --video seen.mp4
-  lffocus through capture/ path.yaml -o seen.exr -o seen.png --statistic trimmed --trim 0.3)",
+  lffocus through capture/ path.yaml -o seen.exr -o seen.png --statistic trimmed --trim 0.3
+  lffocus through capture/ packages/package-*.lfp -o seen     # packages of lfpreprocessor)",
     .details =
         R"(A frame is the mean of the rays that pass the lens. Things in front of the focus plane become a blur
 over it. This command takes the median of the rays of each element instead, or another statistic, so
@@ -71,120 +71,18 @@ PATH is rendered: the ground of a height map, for example, is seen through trees
 Without a name that ends in .exr or .png, OUT is a folder. It receives the frames of PATH as of
 lfrenderer: frame_0001.exr ..., contact_sheet.png and report.json. On Ctrl-C (SIGINT), SIGTERM and
 SIGHUP the program ends with exit code 5. Finished frames are kept, and --resume continues with the
-frames that were being made.)",
+frames that were being made.
+
+Packages of lfpreprocessor share a film among machines, which may write into one FOLDER at the same
+time: each package has its own report, and one that is rendered alone its own contact sheet.)",
 };
 
-struct Arguments {
-  LightFieldArgument light_field;
-  FrameArgument frame;
-  FrameRangeArguments frames;
-  AllowMissing allow_missing;
-  std::vector<std::string> outputs;
-  PictureArguments picture;
-  SettingOptions settings;
-  std::string statistic = "median", order = "channels", filter = "auto", lf_pixels = "auto";
-  std::string format = "auto", memory = "8G", video;
-  double trim = 0.25, max_angle_deg = 0;
-  bool overwrite = false, resume = false, no_contact_sheet = false;
-};
+using Arguments = ThroughArguments;
 
 // Options of which it matters whether they are given.
 struct Given {
   bool frame = false, trim = false;
 };
-
-void AddOutput(CLI::App& app, Arguments& a) {
-  OptionGroup output(app, kOutputGroup);
-  output
-      .Add("-o,--output OUT", a.outputs,
-           "File to write, .exr or .png in sRGB, or folder of frames\n"
-           "Files may be given several times. Channels and attributes are those of a frame. The "
-           "channels count.R, count.G and count.B tell the number of rays of which the statistic "
-           "is taken.")
-      ->required()
-      ->check(NotEmpty())
-      ->check(TakesFiles(".exr .png folder"));
-  a.frames.AddTo(output, "render", "nothing is rendered");
-  output.AddChoice("--format", a.format, {"auto", "exr", "exr-float", "png", "png16"},
-                   "Values in the files\n"
-                   "auto: exr or png, by the extension of the name; exr in a folder\n"
-                   "exr, exr-float: linear light as floating-point numbers of 16 or 32 bits\n"
-                   "png, png16: sRGB of 8 or 16 bits");
-  a.picture.AddTo(output);
-  AddFilmFiles(output, a.video, a.no_contact_sheet);
-}
-
-void AddRunning(CLI::App& app, Arguments& a) {
-  OptionGroup running(app, kRunningGroup);
-  running
-      .Add("--memory SIZE", a.memory,
-           "Upper limit of the memory that is used\n"
-           "SIZE: such as 8G or 512M. Frames whose values fit together read each LF image once. If "
-           "the values of one frame need more, it is made in parts, and LF images are read once "
-           "for each.")
-      ->check(NotEmpty());
-  CLI::Option* const resume = running.AddFlag(
-      "--resume", a.resume,
-      "Continue the unfinished frames of a folder\n"
-      "The inputs and the options that change frames must be the same. Finished frames are kept; "
-      "the frames that were being made are begun again.");
-  running
-      .AddFlag("--overwrite", a.overwrite,
-               "Replace files that exist, and remove an unfinished render\n"
-               "Needed, unless --resume is given, if a file exists, or if the folder has an "
-               "unfinished render or frames of another film. Finished frames in the folder are "
-               "replaced one by one.")
-      ->excludes(resume);
-}
-
-void AddOptions(CLI::App& app, Arguments& a) {
-  a.light_field.AddTo(app);
-  OptionGroup input(app, kInputGroup);
-  a.frame.AddTo(input);
-  a.allow_missing.AddTo(app, "the LF images that the lens sees");
-  AddOutput(app, a);
-  OptionGroup picture(app, kPictureGroup);
-  picture.AddChoice("--statistic", a.statistic, {"median", "trimmed", "min", "max", "mean"},
-                    "Statistic of the rays of each element\n"
-                    "median: the value in the middle; the mean of the two in the middle of an even "
-                    "number\n"
-                    "trimmed: the mean without the share --trim of the values at each end\n"
-                    "min, max: the lowest and the highest value\n"
-                    "mean: the mean, as in a frame with --lens-weights none");
-  CLI::Option* const trim =
-      picture.Add("--trim SHARE", a.trim,
-                  "Share of values that trimmed leaves out at each end\n"
-                  "From 0 to below 0.5. Of n values, SHARE times n are left out at each end, "
-                  "rounded down.");
-  trim->check(CLI::Range(0.0, 0.5));
-  picture.AddChoice(
-      "--order", a.order, {"channels", "luminance"},
-      "Values that are sorted\n"
-      "channels: each colour by itself, so that a colour may be one that no ray has\n"
-      "luminance: whole rays by their luminance, so that their colours stay together");
-  picture.AddChoice(
-      "--filter", a.filter, {"auto", "nearest", "bilinear", "bicubic", "prefiltered"},
-      "Interpolation between LF pixels\n"
-      "auto: bilinear for min and max, because other filters undershoot and overshoot "
-      "beside edges; bicubic for brackets (LF images of one pose with different "
-      "exposures); otherwise prefiltered");
-  a.settings.AddTo(
-      picture, "max_images",
-      "Maximum number of LF images per frame (all)\n"
-      "A frame has the statistic of the rays of N LF images, which are drawn at random "
-      "from those that contribute to it: more noise, in less time and memory.");
-  picture.AddChoice("--lf-pixels", a.lf_pixels, {"auto", "areas", "points"},
-                    "What LF pixels show, for --filter prefiltered\n"
-                    "areas: the mean light of their area, as in photographs\n"
-                    "points: the light of their centre, as in renders without anti-aliasing\n"
-                    "auto: as lf_pixels of the light field says, otherwise measured");
-  picture
-      .Add("--max-angle DEGREES", a.max_angle_deg,
-           "Largest angle between LF camera and frame axes (no limit)\n"
-           "LF cameras whose optical axis is farther from that of the frame are left out.")
-      ->check(CLI::Range(0.0, 180.0));
-  AddRunning(app, a);
-}
 
 LensStatistic StatisticOf(const Arguments& a) {
   return *ValueNamed(a.statistic, {LensStatistic::kMedian, LensStatistic::kTrimmed,
@@ -231,6 +129,26 @@ Result<bool> HasFolder(const Arguments& a, const Given& given) {
   if (a.no_contact_sheet) return refuse("--no-contact-sheet", a.outputs.front(), kFile);
   if (a.resume) return refuse("--resume", a.outputs.front(), kFile);
   return false;
+}
+
+Result<void> CheckPaths(const Arguments& a, bool has_folder) {
+  if (!a.HasPackages()) {
+    if (a.paths.size() == 1) return {};
+    return UsageError(fmt::format(
+        "{} paths are given: expected one PATH, or only packages (files that end in .lfp)",
+        a.paths.size()));
+  }
+  if (!has_folder)
+    return UsageError(fmt::format(
+        "-o {} is a file of one frame, but packages are rendered into a folder: give a folder, or "
+        "the path that the packages were made for",
+        a.outputs.front()));
+  if (a.max_angle_deg > 0)
+    return UsageError(
+        "--max-angle cannot be used with packages, because lfpreprocessor has already selected "
+        "their LF cameras: leave it out, or make the packages again with lfpreprocessor "
+        "--max-angle");
+  return a.light_field.CheckWithPackages();
 }
 
 Result<LensStatisticOptions> OptionsOf(const Arguments& a, const CommonOptions& common,
@@ -402,7 +320,7 @@ Result<void> RunFiles(const Arguments& a, const Program& program,
 Result<FolderOptions> FolderOf(const Arguments& a) {
   FolderOptions folder;
   folder.output_folder = a.outputs.front();
-  folder.inputs = FilesOfPath(a.frame.path);
+  if (!a.HasPackages()) folder.inputs = FilesOfPath(a.frame.path);
   folder.inputs.emplace_back(a.light_field.path);
   folder.format = a.format == "auto" ? FrameFormat::kExrHalf : *ParseFrameFormat(a.format);
   LF_ASSIGN_OR_RETURN(folder.picture, a.picture.Make(folder.format));
@@ -414,47 +332,86 @@ Result<FolderOptions> FolderOf(const Arguments& a) {
   return folder;
 }
 
+// The source and the folder of the frames of a film, and the requests to its render.
+struct FilmMaker {
+  const LensStatisticOptions& statistic;
+  const FolderOptions& folder;
+  RenderSignals* signals;
+  StatisticFilm* source;
+
+  RenderOptions Options(const RadianceEncoding& encoding) const {
+    RenderOptions options = RenderOptionsOf(statistic, encoding);
+    options.folder = folder;
+    options.signals = signals;
+    options.source = source;
+    return options;
+  }
+};
+
+using Progress = std::function<void(const RenderProgress&)>;
+
+// Renders the frames of --frames of PATH. Returns nullopt if no frame is left of them.
+Result<std::optional<RenderReport>> RenderPath(const Arguments& a, const FilmMaker& film,
+                                               ThreadPool& pool, const Progress& tell) {
+  LF_ASSIGN_OR_RETURN(Opened opened, Open(a, true, film.signals->stop, pool));
+  if (a.frames.IsNone(opened.frames)) return std::optional<RenderReport>();
+  RenderOptions options = film.Options(opened.light_field.encoding);
+  options.frames = opened.frames;
+  LF_ASSIGN_OR_RETURN(Package package, PackageOfFilm(std::move(opened.light_field),
+                                                     std::move(opened.path), options, pool));
+  LF_ASSIGN_OR_RETURN(RenderReport report, Render(std::move(package), options, pool, tell));
+  return std::optional<RenderReport>(std::move(report));
+}
+
+// Renders the frames of --frames that the packages have.
+Result<std::optional<RenderReport>> RenderPackageFiles(const Arguments& a, const FilmMaker& film,
+                                                       ThreadPool& pool, const Progress& tell) {
+  LF_ASSIGN_OR_RETURN(const LightField light_field, a.light_field.Open());
+  LF_ASSIGN_OR_RETURN(const LightFieldPlace place, PlaceOf(a.light_field.path, light_field));
+  LF_ASSIGN_OR_RETURN(PackagedFilm packages, OpenPackages({a.paths.begin(), a.paths.end()}, place));
+  RenderOptions options = film.Options(packages.first.light_field.encoding);
+  LF_ASSIGN_OR_RETURN(options.frames, a.frames.Of(packages.first.path.frame_count()));
+  if (a.frames.IsNone(options.frames)) return std::optional<RenderReport>();
+  LF_ASSIGN_OR_RETURN(RenderReport report,
+                      RenderPackages(std::move(packages), options, pool, tell));
+  return std::optional<RenderReport>(std::move(report));
+}
+
 // Makes the frames of --frames in a folder.
 Result<void> RunFilm(const Arguments& a, const Program& program,
                      const LensStatisticOptions& statistic, RenderSignals* signals,
                      const MissingLimit& limit, int argc, char** argv) {
   const CommonOptions& common = program.common();
   const EndsSoon without_checkpoints;
-  LF_ASSIGN_OR_RETURN(FolderOptions folder, FolderOf(a));
+  LF_ASSIGN_OR_RETURN(const FolderOptions folder, FolderOf(a));
+  StatisticFilm source(statistic);
+  const FilmMaker film = {statistic, folder, signals, &source};
   ThreadPool pool(common.threads);
-  Result<Opened> opened = Open(a, true, signals->stop, pool);
-  if (!opened) return WithResumeCommand(opened.error(), argc, argv);
-  if (a.frames.IsNone(opened->frames)) {
-    a.frames.TellNone();
-    return common.json ? PrintReport(FilmJson(a, RenderReport())) : Result<void>();
-  }
-  StatisticFilm film(statistic);
-  RenderOptions options = RenderOptionsOf(statistic, opened->light_field.encoding);
-  options.frames = opened->frames;
-  options.folder = std::move(folder);
-  options.signals = signals;
-  options.source = &film;
   ProgressMeter meter(ParseProgressStyle(common.progress), "px");
   const auto tell = [&](const RenderProgress& now) {
     meter.Update(now.ray_count, now.ray_total,
                  {{"LF image", now.image_count, now.image_total},
                   {"frame", now.frame_count, now.frame_total}});
   };
-  LF_ASSIGN_OR_RETURN(Package package, PackageOfFilm(std::move(opened->light_field),
-                                                     std::move(opened->path), options, pool));
-  const Result<RenderReport> report = Render(std::move(package), options, pool, tell);
+  const bool has_packages = a.HasPackages();
+  const auto report = (has_packages ? RenderPackageFiles : RenderPath)(a, film, pool, tell);
   if (!report) return WithResumeCommand(report.error(), argc, argv);
-  SummariseRender(*report,
-                  a.no_contact_sheet ? a.outputs.front()
-                                     : (fs::path(a.outputs.front()) / kContactSheet).string(),
-                  false);
-  if (common.json) LF_RETURN_IF_ERROR(PrintReport(FilmJson(a, *report)));
-  return EndOfRender(*report, limit, {});
+  if (!*report) {
+    a.frames.TellNone();
+    return common.json ? PrintReport(FilmJson(a, RenderReport())) : Result<void>();
+  }
+  fs::path look_at = a.outputs.front();
+  if (!a.no_contact_sheet)
+    look_at /= has_packages ? ContactSheetName({a.paths.begin(), a.paths.end()}) : kContactSheet;
+  SummariseRender(**report, look_at.string(), false);
+  if (common.json) LF_RETURN_IF_ERROR(PrintReport(FilmJson(a, **report)));
+  return EndOfRender(**report, limit, {});
 }
 
 Result<void> Run(const Arguments& a, const Program& program, const Given& given, int argc,
                  char** argv) {
   LF_ASSIGN_OR_RETURN(const bool has_folder, HasFolder(a, given));
+  LF_RETURN_IF_ERROR(CheckPaths(a, has_folder));
   LF_ASSIGN_OR_RETURN(const MissingLimit limit, a.allow_missing.Limit());
   LF_ASSIGN_OR_RETURN(LensStatisticOptions options, OptionsOf(a, program.common(), given));
   if (has_folder) return RunFilm(a, program, options, &CatchRenderSignals(), limit, argc, argv);
@@ -467,7 +424,7 @@ Result<void> Run(const Arguments& a, const Program& program, const Given& given,
 int RunFocusThrough(int argc, char** argv) {
   Program program("lffocus through", kHelp);
   Arguments arguments;
-  AddOptions(program.app(), arguments);
+  arguments.AddTo(program.app());
   program.AddCommonOptions({.threads = true,
                             .strict = "A broken LF image is an error (it is left out)",
                             .json = "Print what was made as JSON",
@@ -476,6 +433,7 @@ int RunFocusThrough(int argc, char** argv) {
                             .quiet = true});
   return program.Run(argc - 1, argv + 1, [&] {
     const Given given = {program.app().count("--frame") > 0, program.app().count("--trim") > 0};
+    arguments.frame.path = arguments.paths.front();
     return Run(arguments, program, given, argc, argv);
   });
 }

@@ -36,6 +36,10 @@ UNTRIED = {
     "rig: give 1 or more (--count)": BEFORE,
     "rig: expected a share of the camera spacing from 0 to 1": BEFORE,
     "merge_shards: no plates are given": BEFORE,
+    "statistic_film: divide the frames with --frames or packages": BEFORE,
+    "statistic_film: leave them out, or take fewer LF images with --max-images": BEFORE,
+    "statistic_film: rebinned rays are interpolated": BEFORE,
+    "statistic_film: has no sums that could be kept": BEFORE,
     "packed_store_writer: an unfinished store of this name exists": BEFORE,
     "packed_store: compress the light field again with the --image-alpha of this run": BEFORE,
     "check_film_settings: composite the LF images over a background with --background, or ":

@@ -19,7 +19,13 @@ struct StatisticSource::Group {
   std::unique_ptr<FrameCollector> collector;
 };
 
-TakingFrame TakingOf(const FilmSetup& setup, FrameId frame) { return {setup.path().Camera(frame)}; }
+TakingFrame TakingOf(const FilmSetup& setup, FrameId frame) {
+  TakingFrame taking = {setup.path().Camera(frame)};
+  if (setup.film().max_image_count)
+    taking.places = PlacesOfFirst(*setup.film().max_image_count, setup.index().recorded(), taking,
+                                  setup.Select());
+  return taking;
+}
 
 StatisticSource::StatisticSource(const FilmSetup& setup, const LensStatisticOptions& options,
                                  const StatisticPlan& plan, std::span<const FrameId> frames)

@@ -45,7 +45,8 @@ Result<void> RenderPass::Collect() {
     context_.progress(source_->progress(), finished_count_);
     if (IsStopped()) return Interrupt();
     if (!step) context_.signals->attention = false;
-    if (context_.signals != nullptr && context_.signals->save.exchange(false)) {
+    if (source_->CanSave() && context_.signals != nullptr &&
+        context_.signals->save.exchange(false)) {
       LF_RETURN_IF_ERROR(Save(std::numeric_limits<double>::infinity()));
       LogInfo("the state is written, as the signal requested");
     }
