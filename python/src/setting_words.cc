@@ -52,6 +52,11 @@ std::string ValueText(std::string_view key, std::string_view value) {
   const Setting* const setting = FindSetting(key);
   if (key == "guard" || (setting != nullptr && setting->kind == SettingKind::kSwitch))
     return value == "on" ? "True" : "False";
+  if (setting != nullptr && setting->kind == SettingKind::kPoint) {
+    std::string point = "(";
+    for (const char c : value) point += c == ' ' ? std::string(", ") : std::string(1, c);
+    return point + ")";
+  }
   const bool is_text = setting == nullptr || setting->kind == SettingKind::kText
                            ? !ParseNumber(value)
                            : setting->kind == SettingKind::kChoice;

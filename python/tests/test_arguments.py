@@ -145,7 +145,7 @@ def test_what_is_rendered(field, path):
         refuses(lambda: lf.render(field, path, **{name: wrong}), name, lf.UsageError)
     for name, wrong in (("threads", "no"), ("strict", "no"), ("strict", np.array([1, 2]))):
         refuses(lambda: lf.render(field, path, **{name: wrong}), name)
-    refuses(lambda: lf.render(field, path, memory="1M"), "^memory 1 MiB is too small", lf.OutputError)
+    refuses(lambda: lf.render(field, path, memory="1M"), '^memory="1 MiB" is too small', lf.OutputError)
 
 
 @pytest.mark.parametrize("wrong", [3, None, 1.5, [1]])
