@@ -10,7 +10,7 @@ namespace lf {
 
 // Returns the report: depths, virtual LF images, how right they are, speed, and the next command.
 //   total_s  elapsed time of the call
-//   next     the line of NextRender(), or nothing
+//   next     line that advises the next command; "": none
 std::string DensifyText(const DensifyReport& report, const DensifyOptions& options, double total_s,
                         const std::string& next);
 std::string DensifyJson(const DensifyReport& report, const DensifyOptions& options, double total_s);

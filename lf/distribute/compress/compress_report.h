@@ -13,7 +13,7 @@ namespace lf {
 std::string ProgressDetail(const CompressProgress& now);
 
 // Returns the report: compression ratio, quality, speed, skipped LF images, and the next command.
-//   next  the line of NextRender(), or nothing
+//   next  line that advises the next command; "": none
 std::string CompressText(const CompressReport& report, const CompressOptions& options,
                          const std::string& next);
 std::string CompressJson(const CompressReport& report, const CompressOptions& options);

@@ -14,7 +14,7 @@ namespace lf {
 struct ForecastFacts {
   std::string light_field;  // LIGHTFIELD as the user typed it
   std::string output;       // folder of the packages; empty: nothing is written (--plan)
-  std::string next;         // line that advises the next step (NextRender()); empty: none
+  std::string next;         // line that advises the next command; empty: none
   bool rebins = false;      // true for RenderMode::kRebin and kHybrid
   ImageOrder order = ImageOrder::kShuffle;
   uint64_t seed = 0;

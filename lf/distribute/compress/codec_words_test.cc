@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lf/distribute/compress/codec_words.h"
+
+#include <gtest/gtest.h>
+
+namespace lf {
+namespace {
+
+CompressOptions OptionsOf(const CodecWords& words) {
+  CompressOptions options;
+  const Result<void> set = SetCodec(words, &options);
+  EXPECT_TRUE(set) << set.error().message;
+  return options;
+}
+
+TEST(CodecWords, EachProfileHasItsDefaults) {
+  const CodecSettings usual = OptionsOf({}).codec;
+  EXPECT_EQ(usual.profile, CodecProfile::kDefault);
+  EXPECT_EQ(usual.levels, 4);
+  EXPECT_EQ(usual.threshold, 3);
+  const CodecSettings thesis = OptionsOf({.profile = "thesis"}).codec;
+  EXPECT_EQ(thesis.profile, CodecProfile::kThesis);
+  EXPECT_EQ(thesis.levels, 1);
+  EXPECT_EQ(thesis.threshold, 8);
+  const CodecSettings chosen = OptionsOf({.levels = 2, .threshold = 0}).codec;
+  EXPECT_EQ(chosen.levels, 2);
+  EXPECT_EQ(chosen.threshold, 0);
+}
+
+TEST(CodecWords, AQualityIsSearchedForOnlyIfItIsGiven) {
+  EXPECT_FALSE(OptionsOf({}).target_psnr_db);
+  EXPECT_EQ(OptionsOf({.target_psnr = 42}).target_psnr_db, 42);
+}
+
+TEST(CodecWords, WordsThatDoNotExistOrContradictAreRefused) {
+  for (const CodecWords& wrong :
+       {CodecWords{.profile = "best"}, CodecWords{.profile = "lossless", .threshold = 3},
+        CodecWords{.profile = "lossless", .target_psnr = 40}, CodecWords{.quantizer = "16"},
+        CodecWords{.profile = "thesis", .quantizer = "many"}}) {
+    CompressOptions options;
+    const Result<void> set = SetCodec(wrong, &options);
+    ASSERT_FALSE(set) << wrong.profile << " " << wrong.quantizer;
+    EXPECT_EQ(set.error().kind, ErrorKind::kUsage);
+  }
+}
+
+}  // namespace
+}  // namespace lf
