@@ -20,7 +20,7 @@ from common_options import COMMON, OFFERED
 from program_test_case import ProgramTestCase
 
 BIN = None
-REPOSITORY = pathlib.Path(__file__).resolve().parent.parent
+REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 
 VALUES = {"--threads": ["1"], "--seed": ["1"], "--progress": ["none"], "--allow-missing": ["1"]}
 # Calls whose only fault is that their files do not exist.
