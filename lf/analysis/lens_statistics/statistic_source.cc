@@ -22,8 +22,8 @@ struct StatisticSource::Group {
 TakingFrame TakingOf(const FilmSetup& setup, FrameId frame) {
   TakingFrame taking = {setup.path().Camera(frame)};
   if (setup.film().max_image_count)
-    taking.places = PlacesOfFirst(*setup.film().max_image_count, setup.index().recorded(), taking,
-                                  setup.Select());
+    taking.ranks = RanksOfFirst(*setup.film().max_image_count, setup.index().recorded(), taking,
+                                setup.Select());
   return taking;
 }
 
