@@ -277,7 +277,7 @@ TEST_F(PreprocessTest, WhatRebinnedRaysCannotHaveIsRefused) {
     const Result<PreprocessReport> report = Preprocess(field_, film_, options_, pool_, nullptr);
     ASSERT_FALSE(report);
     EXPECT_EQ(report.error().kind, ErrorKind::kUsage);
-    EXPECT_NE(report.error().message.find(has_weights ? "{lens_weights}" : "{max_images}"),
+    EXPECT_NE(report.error().message.find(has_weights ? "{lens_weights hat}" : "{max_images}"),
               std::string::npos);
   }
 }
