@@ -29,7 +29,6 @@ std::string_view TakeWord(std::string_view* text) {
 
 // Returns the text in braces as a reader should see it; "" if it is no reference.
 std::string SpelledReference(std::string_view inside, bool is_heading, const Speller& spell) {
-  if (inside.empty() || inside.back() == ' ') return "";
   const std::string_view word = TakeWord(&inside);
   if (IsProgram(word) && !inside.empty()) {
     const std::string_view key = TakeWord(&inside);

@@ -20,6 +20,11 @@ TEST(Spelling, ReplacesReferencesToOptions) {
   EXPECT_EQ(Spelled("no reference", Spell), "no reference");
 }
 
+TEST(Spelling, ValuesAreAnyText) {
+  EXPECT_EQ(Spelled("{fill 1 }: expected", CommandLineOption), "--fill 1 : expected");
+  EXPECT_EQ(Spelled("{fill }: expected", CommandLineOption), "--fill: expected");
+}
+
 TEST(Spelling, TellsHeadings) {
   EXPECT_EQ(Spelled("a.exr: {z}: leave {z} out", Spell), "a.exr: <z!>: leave <z> out");
 }
@@ -32,7 +37,7 @@ TEST(Spelling, AProgramIsAProgramForEveryReader) {
 }
 
 TEST(Spelling, OtherTextInBracesStays) {
-  for (const char* text : {"{", "}", "{}", "{open", "close}", "{ mode}", "{mode }", "{Mode}", "{0}",
+  for (const char* text : {"{", "}", "{}", "{open", "close}", "{ mode}", "{Mode}", "{0}",
                            "{\"mode\": 1}", "{left,right}.png", "[0-9]{4}", "{{Param.JobFolder}}",
                            "{max-images}", "{lfimport Exclude}"})
     EXPECT_EQ(Spelled(text, Spell), text);
