@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Errors of the face of the library. tests/install_test.py compares its frames with lfrenderer's.
+// Errors of the face of the library. tests/programs/install_test.py compares its frames with
+// lfrenderer's.
 #include "lf/api/frame.h"
 
 #include <gtest/gtest.h>

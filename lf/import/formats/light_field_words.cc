@@ -13,6 +13,7 @@
 
 #include "lf/core/parse_number.h"
 #include "lf/core/shell_word.h"
+#include "lf/core/spelling.h"
 
 namespace lf {
 namespace {
@@ -37,12 +38,7 @@ Result<std::array<double, 3>> ParseBackground(const std::string& text) {
 }
 
 // Returns the option of all programs for a member of LightFieldWords.
-std::string OptionFor(std::string_view member) {
-  std::string option = "--" + std::string(member);
-  for (char& c : option)
-    if (c == '_') c = '-';
-  return option;
-}
+std::string OptionFor(std::string_view member) { return CommandLineOption({member}); }
 
 // Sets a member by its option. Returns false for an unknown option or value.
 bool SetByOption(const std::string& option, const std::string& value, LightFieldWords* words) {

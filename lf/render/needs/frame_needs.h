@@ -3,7 +3,7 @@
 //
 // All parts of the program use FrameNeeds: packages contain these LF cameras, packed stores keep
 // these pixels, orders and limits count these LF images, forecasts count these rays, and a render
-// reads exactly these pixels (tests/needed_pixels_test.py).
+// reads exactly these pixels (tests/programs/needed_pixels_test.py).
 #pragma once
 
 #include <cstdint>
