@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The library in one header. This program prints the light of the middle of a film's first frame,
-// which has the bits of the frame that lfrenderer makes:
+// which has the bits of the frame that lfrenderer --max-images 200 makes:
 //
 //   #include <lf/lfrendertools.h>
 //

@@ -4,12 +4,12 @@
 
 usage: tests/run_test.py NAME [ARGUMENT...]
 
-NAME      of the test: lfexample or chain runs NAME_test.py of the room that has it; or the path of a script
+NAME      a test, such as lfexample or chain: runs tests/*/NAME_test.py; or the path of a script
 ARGUMENT  as tests/CMakeLists.txt gives them: most tests need programs, or the folder of all programs, and take words of
           unittest behind them, such as -v or the name of a class
 
-./test --only tests.NAME builds what the test needs, and runs it. Tests import helpers, modules of bench/, and those of
-their own room; scripts elsewhere that import helpers call add_rooms() first.
+./test --only tests.NAME builds what the test needs, and runs it. Tests may import the modules of their own folder and
+of ROOMS; scripts outside tests/ call add_rooms() before they import these.
 """
 import pathlib
 import runpy

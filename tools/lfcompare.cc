@@ -63,7 +63,7 @@ struct Arguments {
 void AddOptions(CLI::App& app, Arguments& a) {
   lf::OptionGroup input(app, lf::kInputGroup), output(app, lf::kOutputGroup);
   lf::OptionGroup quality(app, lf::kQualityGroup);
-  input.Add("REFERENCE", a.reference, "Picture, or folder of pictures, that is right")
+  input.Add("REFERENCE", a.reference, "Reference picture, or folder of such pictures")
       ->required()
       ->check(lf::NotEmpty())
       ->check(lf::TakesFiles("image folder"));

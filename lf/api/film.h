@@ -19,8 +19,8 @@
 
 namespace lf {
 
-// Prints "error: " and the message to stderr, with the members of settings by their keys (Spelled()
-// in lf/core/spelling.h). Returns the exit code of the error (ErrorKind).
+// Prints "error: " and the message to stderr, with settings by their keys, without
+// braces. Returns the exit code of the error (ErrorKind).
 int Report(const Error& error);
 
 // Opens any LIGHTFIELD: a calibration, a folder that holds one, or a packed store (doc/inputs.md).
@@ -55,7 +55,7 @@ Result<Film> OpenFilm(LightField light_field, const std::filesystem::path& path,
 // frame_0001.exr ..., contact_sheet.png, report.json, and a video if one is asked for. A file
 // appears under its final name only when it is whole. A kill loses at most the work since the last
 // checkpoint (FolderOptions::dump_every_s).
-//   folder    {.output_folder = "frames"}; its `inputs` and `version` are completed
+//   folder    {.output_folder = "frames"}; `version` is set, files of the film join `inputs`
 //   frames    some frames of the path, ascending, such as {FrameId{1}, FrameId{5}}; empty: all
 //   signals   requests to the render while it runs; may be null
 //   progress  called now and then, by the calling thread; may be empty

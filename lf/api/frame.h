@@ -31,9 +31,9 @@ struct Frame {
   std::shared_ptr<const PlateNotes> notes;
 };
 
-// Renders a frame of the film, by all threads. The bits are those of lfrenderer with the same
-// settings. With a mode that rebins, which rays are kept depends on all frames that are rendered
-// together; RenderFilm() and FrameRenderer render those.
+// Renders a frame of the film, with WorkSettings::threads threads. The bits are those of lfrenderer
+// with the same settings. With a mode that rebins, which rays are kept depends on all frames that
+// are rendered together; RenderFilm() and FrameRenderer render those.
 //   number  of the frame, from 1
 // kUsage: the path has no such frame. kInput: no LF image contributes to the frame, or all that do
 // are broken. Other errors are those of FrameRenderer.
@@ -87,7 +87,8 @@ class FrameRenderer {
 
 // Writes a frame with its metadata, under a temporary name until it is whole, into a folder that
 // must exist. The bytes are those of lfrenderer's file.
-//   format  unset: "exr" or "png", by the suffix of `file`
+//   format   unset: "exr" or "png", by the suffix of `file`
+//   picture  how the file shows the picture (film/develop/picture.h)
 // kUsage: the suffix is neither .exr nor .png, or is that of another format; the frame has no
 // notes. kOutput: the folder or the disk cannot be written.
 Result<void> SaveFrame(const Frame& frame, const std::filesystem::path& file,

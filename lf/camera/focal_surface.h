@@ -49,8 +49,8 @@ class FocalSurface {
   // inverse depth is not above 0, or infinite, somewhere in a piece.
   static Result<FocalSurface> Of(int width_px, int height_px, std::vector<FocalPiece> pieces);
 
-  // Bytes() returns the surface as bytes, FromBytes() reads them, exactly. kInput: the bytes are
-  // none of a surface of this plate.
+  // FromBytes() returns exactly the surface whose Bytes() it is given. kInput: the bytes describe
+  // no surface of this plate.
   std::string Bytes() const;
   static Result<FocalSurface> FromBytes(std::string_view bytes, int width_px, int height_px);
 

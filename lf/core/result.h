@@ -36,8 +36,8 @@ enum class ErrorKind {
 };
 
 // The message names file, line or entry, the value found, what was expected and what to do. It
-// names options by their keys, such as {max_images}; whoever shows it to a person spells them
-// (lf/core/spelling.h).
+// names options by their keys, such as {max_images}; Report() (api/film.h) prints it without
+// the braces.
 struct Error {
   ErrorKind kind = ErrorKind::kInput;
   std::string message;

@@ -7,8 +7,9 @@
 //   {lfimport exclude}                     an option of a program, whatever the reader uses
 //   {lfpreprocessor lens_weights none}     with a value
 //
-// A key consists of small letters, digits and underscores; the name of a program of "lf" and small
-// letters. Other text in braces is no reference. Whatever shows a message to a person spells it.
+// A key consists of small letters, digits and underscores; the name of a program is "lf" and small
+// letters. Other text in braces is no reference. Code that shows a message to a person must call
+// Spelled() first.
 #pragma once
 
 #include <functional>
@@ -20,7 +21,7 @@ namespace lf {
 struct OptionReference {
   std::string_view key = {};    // "max_images"
   std::string_view value = {};  // "rebin"; "" if there is none
-  bool is_heading = false;      // true before a colon, behind which the text is about the option
+  bool is_heading = false;      // true if a colon follows, and then a text about the option
 };
 
 using Speller = std::function<std::string(const OptionReference&)>;
@@ -29,12 +30,12 @@ using Speller = std::function<std::string(const OptionReference&)>;
 // options of programs are spelled as for a command line.
 std::string Spelled(std::string_view text, const Speller& spell);
 
-// Returns the text as the readers of this process know options: as SetSpeller() has said; before,
-// by their keys alone, such as "max_images" and "mode rebin". May be called by several threads.
+// Returns the text with its references spelled by the Speller of this process. Without one, they
+// become keys without braces: "max_images", "mode rebin". Several threads may call this.
 std::string Spelled(std::string_view text);
 
-// Sets how the readers of this process know options. For main(), and for the module of a language;
-// to be called before other threads begin.
+// Sets the Speller of this process. main() or a language binding must call this before other
+// threads begin.
 void SetSpeller(Speller spell);
 
 // Returns an option as a command line has it: --max-images, or --mode rebin. It is the Speller of

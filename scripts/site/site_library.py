@@ -14,7 +14,7 @@ INTRODUCTION = """# The C++ library
 
 A C++ program opens light fields and films, and renders frames in memory and films into folders, with the bits of
 `lfrenderer`. It includes one header, `<lf/lfrendertools.h>`. This page has everything that the header declares, in the
-order in which it is read; it is made from the headers. [The library, room by room](rooms.md) shows what is inside.
+order in which it is read; it is made from the headers. [The library, folder by folder](rooms.md) shows what is inside.
 
 """
 BUILD = """## Compile it

@@ -141,11 +141,11 @@ class OutputRulesTest(WritersCase):
                     done = subprocess.run([*map(str, call)], capture_output=True, text=True, timeout=240)
                     self.assertEqual(done.returncode, 2, done.stderr)
                     self.assertRegex(done.stderr.strip().splitlines()[-1],
-                                     r"^error: .* files are frames of another film, the first: frame_000[12]\.exr, was")
+                                     r"^error: .* files are frames of another film; the first, frame_000[12]\.exr, was")
                     self.assertEqual(content(film), before)
                     done = subprocess.run([*map(str, call), "--overwrite"], capture_output=True, text=True, timeout=240)
                     self.assertEqual(done.returncode, 0, done.stderr)
-                    self.assertRegex(done.stderr, r"warning: .* files are frames of another film, the first: frame_")
+                    self.assertRegex(done.stderr, r"warning: .* files are frames of another film; the first, frame_")
                     now = content(film)
                     self.assertNotEqual(now["frame_0001.exr"], before["frame_0001.exr"])
                     self.assertEqual(now["frame_0002.exr"], before["frame_0002.exr"])

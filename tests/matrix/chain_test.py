@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests that what one program writes and another reads gives what the direct way gives, as the table of chains of
-doc/matrix.md promises.
+"""Tests the chains of doc/matrix.md and their promises: one program reads what another wrote, and the result is
+compared with the direct way.
 
 usage: chain_test.py BIN [MODULE] [--all] [WORD...]
   BIN     folder of the programs

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests that requests of the page cost what they show: with a path of a million frames, they take hardly more processor
-time and memory than with one of ten frames.
+"""Tests that long films do not slow the page down: for a path of a million frames, its requests take hardly more
+processor time and memory than for one of ten.
 
 usage: long_film_test.py LFVISUALIZER
 """

@@ -53,8 +53,8 @@ struct HelpTexts {
   const char* usage = "";     // one line for each way to call the program
   const char* examples = "";  // one line for each command
   const char* details = "";   // paragraphs of --help-all: what is written, signals, ...
-  // The program whose options may follow "--", such as "lfrenderer", and the names of those of its
-  // options that are refused there.
+  // The program whose options may follow "--", such as "lfrenderer", and the names of the options
+  // that are refused there.
   const char* rest_program = "";
   std::span<const char* const> refused_in_rest = {};
 };

@@ -21,9 +21,8 @@ const std::atomic<bool>& CatchInterrupts();
 // waits until its child processes have ended.
 const std::atomic<bool>& CatchInterruptsOfJob();
 
-// As CatchInterruptsOfJob(), for a render: after SIGINT, SIGTERM or SIGHUP the render writes a
-// checkpoint and ends; after SIGUSR1 it writes a checkpoint and continues. Must be called only
-// once.
+// Does what CatchInterruptsOfJob() does, for a render: SIGINT, SIGTERM and SIGHUP make it write a
+// checkpoint and end; SIGUSR1 makes it write one and continue. Must be called only once.
 RenderSignals& CatchRenderSignals();
 
 // While an object exists, a signal that CatchRenderSignals() catches ends the program within the

@@ -26,7 +26,7 @@ inline constexpr std::array kPrograms = {
                   "focus, field of view, depth of field."},
     ListedProgram{
         "lfpath", "path",
-        "Converts camera paths between programs, moves and resamples them, or tells about one."},
+        "Converts camera paths between programs, moves and resamples them, or describes one."},
     ListedProgram{"lfpreprocessor", "preprocess",
                   "Selects the part of a light field that a film needs, and divides it into "
                   "packages for many machines."},

@@ -47,7 +47,7 @@ ProgressMeter::~ProgressMeter() {
   if (style_ == ProgressStyle::kBar) LogProgressLine("");
 }
 
-// Returns true if it is time to print. Cheap, so that callers can test it before they format texts.
+// Returns true if it is time to print. It is fast, so callers ask before they format texts.
 bool ProgressMeter::IsDue() const {
   if (style_ == ProgressStyle::kNone) return false;
   const double interval_s = style_ == ProgressStyle::kBar                        ? 0.2

@@ -150,8 +150,8 @@ Result<std::shared_ptr<const PathFrames>> PageScene::FramesOf(const std::string&
   return frames;
 }
 
-// Computes the cameras of the whole path. They take no more memory than the packages, which hold
-// the cameras of the whole film.
+// True if the path has the packages' cameras. Computes all cameras of the path: they take no more
+// memory than the packages.
 bool PageScene::HasCamerasOfPackages(const PathFrames& path) const {
   return !packages_hash_.empty() && HashOfCameras(*EvaluatePath(path)) == packages_hash_;
 }

@@ -18,7 +18,7 @@ namespace {
 // Difference of colours, as a share of white and a mean over R, G and B, at which a fellow counts
 // 1 / e of an element of equal colour. Elements at borders mix two colours, so that it is wide.
 constexpr double kSimilar = 0.25;
-// Confidence from which a depth is doubted, and from which it confirms others.
+// Only depths with at least this confidence are tested, and confirm others.
 constexpr float kSure = 0.5f;
 constexpr size_t kSteps = 256;  // of the table of weights, over 4 kSimilar
 constexpr double kFullWeight = 1024;

@@ -189,7 +189,7 @@ void MeanOverWindows(const std::vector<float>& costs, const PixelRect& tile, int
   }
 }
 
-// Writes the costs of the tile's elements alone.
+// Copies the tile's costs without their border.
 void CopyInner(const std::vector<float>& costs, const PixelRect& tile, int radius, float* inner) {
   const int stride = tile.width() + 2 * radius;
   for (int y = 0; y < tile.height(); ++y)

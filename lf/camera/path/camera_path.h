@@ -35,8 +35,8 @@ inline double InstantOffset(const Shutter& shutter, int instant) {
   return shutter.angle_deg / 360 * ((instant + 0.5) / shutter.samples - 0.5);
 }
 
-// lf::OpenFilm() makes one of a file. A program may also make one of `cameras` alone, all with the
-// same size of the frame.
+// A camera path. lf::OpenFilm() reads it from a file. A program may also set `cameras` alone, all
+// with one frame size.
 struct CameraPath {
   double fps = 30;
   double unit_m = 1;                  // metres per world unit

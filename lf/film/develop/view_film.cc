@@ -239,7 +239,7 @@ Result<void> FilmWriter::ChooseRate() {
   report_.fps = options_.fps ? options_.fps : header_.colours.frames_per_second;
   if (report_.fps) return {};
   report_.fps = kDefaultFps;
-  LogWarning("{}: states no frames per second ({} are used: {{fps}})",
+  LogWarning("{}: states no frames per second ({} are used; set {{fps}})",
              moments_[0].files[0].string(), kDefaultFps);
   return {};
 }

@@ -111,7 +111,7 @@ Result<ForeignPath> ParseChan(ByteStream stream, const PathOptions& options) {
                     stream.path().string()));
   if (lacks_fov && !options.focal_length_mm)
     path.lacks.push_back(
-        fmt::format("no field of view (that of a lens of {} mm is used: "
+        fmt::format("no field of view (that of a lens of {} mm is used; set "
                     "{{focal_length_mm}})",
                     kDefaultFocalLength_mm));
   return path;

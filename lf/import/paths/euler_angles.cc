@@ -71,7 +71,7 @@ Vec3 AnglesOfRotation(const Mat3& rotation, RotationOrder order, const Vec3& bef
     angles[k] = std::atan2(-sign * rotation(i, j), rotation(i, i));
     angles[i] = std::atan2(-sign * rotation(j, k), rotation(k, k));
   } else {
-    // Only the sum or the difference of the outer angles is known: the inner one is kept.
+    // Gimbal lock: only the sum or difference of a and c is known, so c is kept.
     angles[k] = before_rad[k];
     const Mat3 rest =
         rotation * (RotationAbout(j, angles[j]) * RotationAbout(k, angles[k])).transpose();

@@ -44,8 +44,8 @@ double DefaultFocus(const PathOptions& options, ForeignPath* path) {
   }
   path->lacks.push_back(
       distance_w == 1
-          ? "no focus distance (1 world unit is used: {focus_distance})"
-          : fmt::format("no focus distance ({:.4g} world units{} are used: {{focus_distance}})",
+          ? "no focus distance (1 world unit is used; set {focus_distance})"
+          : fmt::format("no focus distance ({:.4g} world units{} are used; set {{focus_distance}})",
                         distance_w, source));
   return distance_w;
 }
@@ -68,12 +68,13 @@ Defaults DefaultsFor(double unit_m, const PathOptions& options, ForeignPath* pat
   defaults.sensor_width_w = kDefaultSensorWidth_mm * (1e-3 / unit_m);
   if (!AllState(*path, &ForeignCamera::aperture_diameter_w) && !options.f_number &&
       !options.aperture_diameter_mm)
-    path->lacks.push_back("no aperture (a pinhole is used: {f_number} or {aperture_diameter_mm})");
+    path->lacks.push_back(
+        "no aperture (a pinhole is used; set {f_number} or {aperture_diameter_mm})");
   if (!AllState(*path, &ForeignCamera::focus_distance_w))
     defaults.focus_distance_w =
         options.focus_distance_w ? *options.focus_distance_w : DefaultFocus(options, path);
   if (!AllState(*path, &ForeignCamera::sensor_width_w) && !options.sensor_width_mm)
-    path->lacks.push_back(fmt::format("no sensor width ({} mm are used: {{sensor_width_mm}})",
+    path->lacks.push_back(fmt::format("no sensor width ({} mm are used; set {{sensor_width_mm}})",
                                       kDefaultSensorWidth_mm));
   return defaults;
 }
@@ -164,13 +165,14 @@ void Replace(const PathOptions& options, RenderCamera* camera) {
 
 double FpsOr(const PathOptions& options, ForeignPath* path) {
   if (!options.fps)
-    path->lacks.push_back(fmt::format("no frames per second ({} are used: {{fps}})", kDefaultFps));
+    path->lacks.push_back(
+        fmt::format("no frames per second ({} are used; set {{fps}})", kDefaultFps));
   return options.fps.value_or(kDefaultFps);
 }
 
 std::array<int, 2> ResolutionOr(const PathOptions& options, ForeignPath* path) {
   if (!options.resolution_px)
-    path->lacks.push_back(fmt::format("no resolution ({}x{} is used: {{resolution}})",
+    path->lacks.push_back(fmt::format("no resolution ({}x{} is used; set {{resolution}})",
                                       kDefaultResolution_px[0], kDefaultResolution_px[1]));
   return options.resolution_px.value_or(kDefaultResolution_px);
 }

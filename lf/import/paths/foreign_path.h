@@ -35,7 +35,7 @@ struct ForeignPath {
   std::vector<ForeignCamera> cameras;
   int views = 1;                          // of each moment (CameraPath::views)
   std::optional<DepthRange> depth_range;  // depths of the scene, if the file states them
-  // Phrases of the warning, such as "no frames per second (30 are used: --fps)".
+  // Phrases of the warning, such as "no frames per second (30 are used; set {fps})".
   std::vector<std::string> lacks;
 };
 

@@ -164,7 +164,7 @@ Result<size_t> FrameCount(const NgpHead& head, const fs::path& file, const PathO
                     "their number ({{lfpath frames}})",
                     file.string(), head.duration_s, path->fps, kMostFrames));
   const size_t frames = std::max(size_t{1}, static_cast<size_t>(count));
-  path->lacks.push_back(fmt::format("no number of frames ({} are used, for {} s: {{frames}})",
+  path->lacks.push_back(fmt::format("no number of frames ({} are used, for {} s; set {{frames}})",
                                     frames, head.duration_s));
   return frames;
 }

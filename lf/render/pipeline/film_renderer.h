@@ -97,8 +97,8 @@ class FilmRenderer final : public FrameSource {
   RenderedFrame Develop(size_t f);
   RenderedFrame Develop(size_t f, const std::optional<Completion>& completion, bool with_effective,
                         const std::function<bool()>& is_interrupted) const override;
-  // Measures samples and noise if the options have a rule for them, stop_at_... or require_..., and
-  // adds them to the report; leaves out the noise if moments(f) is null. kInterrupted:
+  // Measures samples and noise if FilmSettings::stop_when or require has a rule for them, and adds
+  // them to the report; leaves out the noise if moments(f) is null. kInterrupted:
   // WorkSettings::stop is set.
   Result<void> Measure(size_t f, FrameReport* report) override;
   // Returns the facts that are needed to develop the frame's plate. The caller adds the skipped LF

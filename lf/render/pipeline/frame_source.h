@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The seam between what makes frames and what keeps them. A FrameSource collects the frames of one
-// pass from LF images, batch by batch, and develops them; RenderPass (render_pass.h) owns the
+// Separates code that makes frames from code that saves them. A FrameSource collects the frames of
+// one pass from LF images, batch by batch, and develops them; RenderPass (render_pass.h) owns the
 // folder: files, records, checkpoints and signals. FilmRenderer is the source of lfrenderer. A
 // FilmSource makes the sources of all passes of a film.
 #pragma once
@@ -40,16 +40,16 @@ class FrameSource {
 
   // Selects the LF images that are still to be collected. Must be called once, before the functions
   // below.
-  //   state  the frames that it has as finished are released, and the work goes on from what Save()
-  //          wrote there; null: nothing was made before. Used only during the call
-  //   early  frames to be finished with what the state has of them, ascending
+  //   state  its finished frames are released, and the others resume from what Save() wrote there;
+  //          null: all frames start empty. Used only during the call
+  //   early  frames to be finished with the rays that the state has of them, ascending
   virtual Result<void> Begin(const RunState* state, std::span<const FrameId> early) = 0;
   // Collects the next batch of LF images. Returns false if no LF image was left. After
   // kInterrupted, the caller may call Step() again.
   virtual Result<bool> Step() = 0;
   // The LF images that all steps together read, by ascending ranks.
   virtual const std::vector<SelectedImage>& images() const = 0;
-  // Progress of the steps so far, and after the last one.
+  // Progress so far, and the progress that the last step will reach.
   virtual CollectProgress progress() const = 0;
   virtual CollectProgress total() const = 0;
   // Broken LF images that the steps left out.
@@ -74,11 +74,12 @@ class FrameSource {
   virtual bool IsReleased(size_t f) const = 0;
   bool AreAllReleased() const;
 
-  // Makes what several frames share of the developed picture of a frame; nullopt if there is none.
+  // Returns the part of the picture that is interpolated from rebinned rays; nullopt if there is
+  // none. Only one thread at a time may call it.
   virtual std::optional<Completion> Complete(size_t f) = 0;
   // Develops what was collected of the frame so far. FrameReport::samples and noise are not set,
-  // because Measure() sets them. Several threads may call these three functions at the same time,
-  // for different frames.
+  // because Measure() sets them. Several threads may call Develop(), Measure() and NotesOf() at the
+  // same time, for different frames.
   //   completion  result of Complete() for this frame
   // with_effective and is_interrupted are explained at DevelopFrame().
   virtual RenderedFrame Develop(size_t f, const std::optional<Completion>& completion,
@@ -95,7 +96,7 @@ class FrameSource {
   // Saves what was collected since the last call of frames that are not released, for Begin() of a
   // later run.
   virtual Result<void> Save(RunState* state) = 0;
-  // Ends a pass whose frames are all finished: removes from the state what they shared.
+  // Ends a pass whose frames are all finished: removes the data that they shared from the state.
   virtual void End(RunState* state) = 0;
   // Writes the plate of a finished frame. Several threads may call it at the same time, for
   // different frames.

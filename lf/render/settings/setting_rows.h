@@ -167,7 +167,7 @@ Setting Rule(Setting row, Member member) {
   return row;
 }
 
-// Adds the rows of rebinned rays (rebin_setting_rows.cc).
+// Adds the rows of kRebinning (rebin_setting_rows.cc).
 void AddRebinRows(std::vector<Setting>& rows);
 
 }  // namespace lf

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The settings of a film as texts: one row for each setting, from which the options of the programs
-// and the keyword arguments of Python are made. A new setting is a member of FilmSettings, a row
-// here, and its use.
+// and the keyword arguments of Python are made. A new setting needs a member of FilmSettings, a
+// row in setting_table.cc or rebin_setting_rows.cc, and code that uses it.
 #pragma once
 
 #include <functional>
@@ -49,14 +49,14 @@ struct Setting {
   // The word for a value in help: N in --max-images N. Empty for kChoice and kSwitch.
   std::string_view placeholder = {};
   std::vector<std::string_view> words = {};  // the words of kChoice and kSwitch
-  // True: a whole or other number that is unset by default, and by 0.
+  // True: the number is unset by default, and setting it to 0 unsets it.
   bool is_optional = false;
   // Smallest and largest number of kWhole and kNumber.
   double least = 0;
   double most = std::numeric_limits<double>::infinity();
   // The first line is a summary. The others are details; a line "word: meaning" explains a word.
-  // {mode} or {mode rebin} stands for another setting, with a value, which each door spells in its
-  // own way (lf/core/spelling.h).
+  // {mode} names another setting, {mode rebin} a setting with a value; programs and Python spell
+  // them in their own ways (lf/core/spelling.h).
   std::string_view text = {};
 
   // Returns the value as a text that `set` accepts.

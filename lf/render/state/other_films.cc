@@ -72,7 +72,7 @@ Result<FramesThatStay> FindFramesThatStay(const fs::path& report, const FilmInFo
   FramesThatStay staying;
   if (count > 0)
     staying.others = fmt::format(
-        "{} of another film, the first: {}",
+        "{} of another film; the first, {}",
         count == 1 ? "a file is a frame" : fmt::format("{} files are frames", count), first);
   if (same.empty()) return staying;
   earlier.frames = std::move(same);

@@ -34,7 +34,7 @@ struct FramesThatStay {
   // Frames of the same film, in the report that they were found in.
   std::optional<RenderReport> same;
   // Says how many frames are of another film, and what differs, such as "2 files are frames of
-  // another film, the first: frame_0003.exr, was rendered with seed 1, this call has seed 2"; empty
+  // another film; the first, frame_0003.exr, was rendered with seed 1, this call has seed 2"; empty
   // if there are none.
   std::string others;
 };

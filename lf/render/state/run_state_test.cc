@@ -53,7 +53,7 @@ class RunStateTest : public ::testing::Test {
     ASSERT_TRUE(state->SaveFinished(frame));
   }
 
-  // Adds the rays of one section of frames 1 to 3 to the state: one cell.
+  // Saves one rebinned ray, for section 0 of a pass of frames 1 to 3.
   void AddRays() {
     BinnedRay ray;
     ray.cell = 5;
@@ -190,7 +190,7 @@ TEST_F(RunStateTest, FramesOfAnotherFilmAreNotLeftBesideNewOnes) {
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().kind, ErrorKind::kUsage);
   EXPECT_NE(refused.error().message.find(
-                "a file is a frame of another film, the first: frame_0003.exr, was rendered with "),
+                "a file is a frame of another film; the first, frame_0003.exr, was rendered with "),
             std::string::npos)
       << refused.error().message;
   EXPECT_TRUE(fs::exists(folder_ / "report.json"));
