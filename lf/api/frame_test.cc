@@ -53,6 +53,20 @@ TEST(Face, FramesWithoutLfImagesAreErrors) {
   ExpectError(frame.error(), ErrorKind::kInput, "/nowhere");
 }
 
+// A shutter makes pictures of the instants, and their metadata of the cameras: both must change.
+TEST(Face, AChangeOfCamerasIsOneOfInstants) {
+  Film film = FilmWithoutImages();
+  film.path.shutter = {180, 2};
+  for (const RenderCamera& camera : film.path.cameras)
+    film.path.instants.insert(film.path.instants.end(), 2, camera);
+  film.path.ChangeCameras([](RenderCamera* camera) { camera->aperture.radius_w = 0.125; });
+  for (uint32_t frame = 1; frame <= film.path.frame_count(); ++frame) {
+    EXPECT_EQ(film.path.Camera(FrameId{frame}).aperture.radius_w, 0.125);
+    for (const RenderCamera& camera : film.path.Instants(FrameId{frame}))
+      EXPECT_EQ(camera.aperture.radius_w, 0.125);
+  }
+}
+
 TEST(Face, MissingFilesAreNamed) {
   ExpectError(Open("/nowhere/capture").error(), ErrorKind::kInput, "/nowhere/capture");
   const auto film = OpenFilm(testing::NoiseField(2), "/nowhere/path.yaml");

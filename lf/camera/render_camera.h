@@ -28,10 +28,14 @@ struct Hood {
   bool exists() const { return radius_w > 0; }
 };
 
-// A camera may be changed before its frame is rendered: by another aperture.radius_w, or by another
-// focus distance:
-//   camera.focus_distance_w = 2;
-//   camera.focus_plane = FocusPlane(camera.pinhole, 2, camera.focus_tilt);
+// The lens and the focus of all frames are changed while their path is opened (PathOptions):
+//   OpenFilm(light_field, path, {.aperture_diameter_mm = 9, .focus_distance_w = 2})
+// Cameras may also be changed before their frames are rendered:
+//   film.path.ChangeCameras([](lf::RenderCamera* camera) {
+//     camera->focus_distance_w = 2;
+//     camera->focus_plane = lf::FocusPlane(camera->pinhole, 2, camera->focus_tilt);
+//     camera->surface = nullptr;  // it would replace the focus plane
+//   });
 struct RenderCamera {
   PinholeCamera pinhole;  // projects points through the lens centre to elements of the sensor plate
   Aperture aperture;      // in the plane through the lens centre normal to the optical axis

@@ -69,6 +69,13 @@ struct CameraPath {
     LF_CHECK(instants.size() == cameras.size() * count);
     return std::span(instants).subspan((frame.value - 1) * count, count);
   }
+  // Calls change(&camera) for the camera of each frame and of each instant. A shutter makes
+  // pictures of the instants alone, and describes frames by the cameras.
+  template <class Change>
+  void ChangeCameras(const Change& change) {
+    for (RenderCamera& camera : cameras) change(&camera);
+    for (RenderCamera& camera : instants) change(&camera);
+  }
   // Returns the cameras of Instants() of all frames, one frame after the other.
   std::span<const RenderCamera> AllInstants() const {
     return shutter.exists() ? instants : cameras;

@@ -88,7 +88,7 @@ struct FilmSettings {
   bool Collects() const { return lf::Collects(mode); }
   bool Rebins() const { return lf::Rebins(mode); }
   // Returns true if a setting depends on how many rays each element has.
-  bool CountsRays() const { return stop_when.samples || require.samples || smooth_below > 0; }
+  bool CountsRays() const { return stop_when.samples || require.samples || smooth_below > 1; }
   // Returns true if a setting depends on the noise, which is measured by how much the LF images
   // differ within an element.
   bool MeasuresNoise() const { return stop_when.noise || require.noise; }
