@@ -33,7 +33,7 @@ NOT_LISTED = {"--progress"}
 # Match "  -o, --output DIR    Folder of the frames" and "      Default: 0 (all); values: 0 to 180" in --help-all.
 OPTION = re.compile(r"^  (?:-\w, )?(--[\w-]+)")
 DEFAULT = re.compile(r"^      Default: ([^\s;]+)")
-RESOLVED = ("law", "estimator", "filter", "lens_weights", "back_end", "order")
+RESOLVED = ("ray_model", "estimator", "filter", "lens_weights", "back_end", "order")
 HEAD = """\
 # Defaults of the programs, that figures depend on. Made by bench/defaults.py, which tells more;
 # a test compares them with what the programs say.

@@ -119,7 +119,7 @@ field = lf.open(sys.argv[1])
 camera = lf.Path.load(sys.argv[2], field.unit_m)[0]
 threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT)).start()
 try:
-    lf.through(field, camera.replace(resolution=(6000, 4000)), memory="2G")
+    lf.through(field, camera.replace(resolution=(6000, 4000)), memory="2300M")
     print("finished")
 except KeyboardInterrupt:
     print("interrupted")
