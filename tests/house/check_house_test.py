@@ -148,14 +148,14 @@ class PlantedFaults(unittest.TestCase):
         self.plant("python/src/b.cc", '#include "python/src/b.h"\n#include "lf/core/a.h"\n')
         self.plant("python/CMakeLists.txt", "# Nothing of tools/.\nadd_library(b src/b.cc)\n")
         self.plant("tests/c.cc", '#include "tools/common/d.h"\n')
-        self.expect("check_includes.py", faults=[])
+        self.expect("check_house.py", "includes", faults=[])
         self.plant("lf/core/a.cc", "#include <CLI/CLI.hpp>\n")
         self.plant("python/src/b.cc", '#include "lf/core/a.h"\n#include "tools/common/d.h"\n#include "tests/e.h"\n'
                                       "#include <CLI/App.hpp>\n")
         self.plant("python/CMakeLists.txt", 'set(others "${PROJECT_SOURCE_DIR}/tools/d.cc")\n'
                                             "target_link_libraries(b CLI11::CLI11)\n")
         self.plant("tests/c.cc", "#include <CLI/CLI.hpp>\n")
-        self.expect("check_includes.py", faults=[
+        self.expect("check_house.py", "includes", faults=[
             "lf/core/a.cc:1: <CLI/CLI.hpp> belongs to tools", "python/src/b.cc:2: python stands on lf alone",
             "python/src/b.cc:3: python stands on lf alone", "python/src/b.cc:4: <CLI/App.hpp>",
             "python/CMakeLists.txt:1: only tools may have tools/", "python/CMakeLists.txt:2: only tools may have CLI11",
