@@ -169,7 +169,10 @@ TEST_F(PlateFile, ABitFlippedAnywhereIsSeen) {
 TEST_F(PlateFile, WhatItSaysIsCheckedBeforeAnythingIsAllocated) {
   using plate_format::Head;
   const std::string bytes = BytesOf(testing::NoisePlate(20, 15, 7, SensorPlate::kMaxCount, true));
-  ExpectError(WithHead(bytes, [](Head* head) { head->version = 7; }), "version 7");
+  ExpectError(WithHead(bytes, [](Head* head) { head->version = 7; }),
+              "version 7, but this program reads version 2: use the program that wrote it");
+  ExpectError(WithHead(bytes, [](Head* head) { head->version = 1; }),
+              "version 1, which builds of lfrendertools from before version 0.1.0 read, but");
   ExpectError(WithHead(bytes, [](Head* head) { head->width = 0; }), "0 x 15");
   ExpectError(WithHead(bytes, [](Head* head) { head->height = 65537; }),
               "width and height from 1 to 65536");

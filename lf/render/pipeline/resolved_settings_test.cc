@@ -32,6 +32,8 @@ TEST(Resolved, AutoBecomesWhatTheRenderUses) {
   FilmSettings settings;
   EXPECT_EQ(Resolved(settings, package).lens_weights, LensWeights::kAuto);
   EXPECT_EQ(Resolved(settings, package).reading.filter, PixelFilter::kPrefiltered);
+  settings.smooth_below = 1;  // smooths nothing
+  EXPECT_EQ(Resolved(settings, package).lens_weights, LensWeights::kAuto);
   settings.smooth_below = 3;  // counts rays
   EXPECT_EQ(Resolved(settings, package).lens_weights, LensWeights::kNone);
   settings.lens_weights = LensWeights::kHat;

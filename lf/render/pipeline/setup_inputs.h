@@ -2,7 +2,6 @@
 // The inputs that decide the rays of a film (render/state/run_inputs.h), from its setup.
 #pragma once
 
-#include <cstddef>
 #include <string>
 
 #include "lf/core/result.h"

@@ -116,6 +116,8 @@ TEST(Report, OtherTextsAreErrorsThatNameTheFieldAndTheFile) {
   for (const auto& [text, word] :
        {std::pair("", "no JSON"),
         {"{}", "format"},
+        {R"({"format":"lfreport 1"})", "\"lfreport 1\", which builds of lfrendertools from before"},
+        {R"({"format":"lfreport 3"})", "expected \"lfreport 2\", found \"lfreport 3\";"},
         {"[]", "expected an object"},
         {R"({"format":"lfreport 2","seconds":"x"})", "\"seconds\": expected a number"},
         {R"({"format":"lfreport 2","frames":[{}]})", "number from 1"},
