@@ -111,7 +111,8 @@ def test_lenses_without_an_order_are_refused(field, path):
         lf.through(field, path[0].replace(position=(5, 0, -1)))
 
 
-# A frame of so many parts that it takes much longer than a second.
+# A frame of so many parts that it takes much longer than a second. Each thread has sums of its own, so that the memory is
+# for two threads, on any machine.
 INTERRUPTED = """
 import os, signal, sys, threading
 import lfrendertools as lf
@@ -119,7 +120,7 @@ field = lf.open(sys.argv[1])
 camera = lf.Path.load(sys.argv[2], field.unit_m)[0]
 threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT)).start()
 try:
-    lf.through(field, camera.replace(resolution=(6000, 4000)), memory="2300M")
+    lf.through(field, camera.replace(resolution=(6000, 4000)), memory="2300M", threads=2)
     print("finished")
 except KeyboardInterrupt:
     print("interrupted")
