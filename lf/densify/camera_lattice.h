@@ -21,6 +21,11 @@ struct LatticePlace {
   std::vector<WeightedPoint> neighbours;  // NaturalNeighbours() of `inside`
 };
 
+// Returns the place with its neighbours. If all points are on one line, `inside` is the nearest
+// place between two of them.
+//   points  one or more
+LatticePlace PlaceAmong(std::span<const Vec2> points, const Vec2& place);
+
 // Returns the places of a hexagonal lattice, with this distance between neighbours, that lie in the
 // convex hull of the points or at most `outside` away from it, without those that are nearer than
 // half the distance to one of the points.

@@ -10,17 +10,10 @@
 #include <utility>
 
 #include "lf/core/median.h"
-#include "lf/densify/natural_neighbours.h"
 #include "lf/light_field/model/capture_geometry.h"
 
 namespace lf {
 namespace {
-
-// Returns the number of the direction, of eight, from one point to another.
-int DirectionOf(const Vec2& offset) {
-  const double turn = std::atan2(offset.y(), offset.x()) / kPi * 4;
-  return static_cast<int>(std::floor(turn + 8.5)) % 8;
-}
 
 // Puts the LF cameras on a sphere around the subject, and unrolls it.
 Result<void> Unroll(std::span<const Vec3> centres, const Vec3& subject, CameraPlane* plane) {
@@ -34,8 +27,10 @@ Result<void> Unroll(std::span<const Vec3> centres, const Vec3& subject, CameraPl
     const double arc = std::acos(std::clamp(-direction.z(), -1.0, 1.0));
     if (DegreesFromRadians(arc) > kMostArc_deg)
       return InputError(fmt::format(
-          "LF cameras surround the scene: one is {:.0f} degrees away from their middle, expected "
-          "at most {:.0f}; densify each side by itself ({{lfimport exclude}} leaves LF images out)",
+          "LF cameras surround the scene: one is {:.0f} degrees away from their middle, and "
+          "without "
+          "a camera path at most {:.0f} are possible; give the camera path of a film, so that "
+          "virtual LF images are made for its lenses",
           DegreesFromRadians(arc), kMostArc_deg));
     const double across = direction.head<2>().norm();
     plane->points.push_back(across > 0 ? Vec2(direction.head<2>() / across * (arc * radius))
@@ -83,46 +78,10 @@ Result<CameraPlane> CameraPlaneOf(const LightField& light_field) {
   if (!subject)
     return InputError(fmt::format(
         "LF cameras look up to {:.0f} degrees away from their mean direction, and not at one "
-        "point: use parts of the light field that look in one direction ({{lfimport exclude}})",
+        "point: give the camera path of a film, so that virtual LF images are made for its lenses",
         plane.widest_deg));
   LF_RETURN_IF_ERROR(Unroll(centres, *subject, &plane));
   return plane;
-}
-
-std::vector<std::vector<uint32_t>> CompareWith(std::span<const Vec2> points) {
-  constexpr size_t kLeast = 4, kUsual = 3;
-  constexpr double kFarthest = 4;
-  std::vector<std::vector<uint32_t>> orders;
-  std::vector<double> usual;
-  for (const Vec2& point : points) {
-    orders.push_back(ByDistance(points, point));
-    const uint32_t other = orders.back()[std::min(kUsual, points.size() - 1)];
-    usual.push_back((points[other] - point).norm());
-  }
-  const double median = Median(usual);
-  std::vector<std::vector<uint32_t>> result;
-  for (size_t i = 0; i < points.size(); ++i) {
-    const std::vector<uint32_t>& order = orders[i];
-    std::vector<uint32_t> chosen;
-    bool has[8] = {};
-    double nearest = 0;
-    for (const uint32_t other : order) {
-      const Vec2 offset = points[other] - points[i];
-      const double distance = offset.norm();
-      if (distance == 0) continue;
-      if (nearest == 0) nearest = distance;
-      if (distance > kFarthest * std::max(median, nearest) && chosen.size() >= 2) break;
-      bool& is_taken = has[DirectionOf(offset)];
-      if (!is_taken) chosen.push_back(other);
-      is_taken = true;
-    }
-    for (size_t k = 0; k < order.size() && chosen.size() < kLeast; ++k)
-      if ((points[order[k]] - points[i]).norm() > 0 &&
-          std::find(chosen.begin(), chosen.end(), order[k]) == chosen.end())
-        chosen.push_back(order[k]);
-    result.push_back(std::move(chosen));
-  }
-  return result;
 }
 
 }  // namespace lf

@@ -30,8 +30,4 @@ Result<CameraPlane> CameraPlaneOf(const LightField& light_field);
 // Returns the rotation matrix nearest to a weighted sum of rotation matrices.
 Mat3 MeanRotation(std::span<const Mat3> rotations, std::span<const double> weights);
 
-// Returns, for each point, the points that its LF image is compared with: the nearest one in each
-// of eight directions, up to four times as far as usual, or at least the nearest four.
-std::vector<std::vector<uint32_t>> CompareWith(std::span<const Vec2> points);
-
 }  // namespace lf

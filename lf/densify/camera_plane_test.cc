@@ -66,17 +66,25 @@ TEST(NaturalNeighbours, OutsideTheHullThereAreNone) {
   EXPECT_TRUE(NaturalNeighbours(Grid(3, 3), {-5, 1}).empty());
 }
 
-TEST(CompareWith, ChoosesTheEightAroundAPointOfAGrid) {
-  const std::vector<Vec2> points = Grid(5, 5);
-  const std::vector<std::vector<uint32_t>> chosen = CompareWith(points);
-  std::vector<uint32_t> middle = chosen[12];
-  std::sort(middle.begin(), middle.end());
-  EXPECT_EQ(middle, (std::vector<uint32_t>{6, 7, 8, 11, 13, 16, 17, 18}));
-  EXPECT_GE(chosen[0].size(), 3u);
-  for (const std::vector<uint32_t>& of_point : chosen)
-    EXPECT_EQ(std::count(of_point.begin(), of_point.end(),
-                         static_cast<uint32_t>(&of_point - chosen.data())),
-              0);
+TEST(PlaceAmong, IsInterpolatedBetweenTwoOnALine) {
+  const std::vector<Vec2> row = Grid(5, 1);
+  const LatticePlace at = PlaceAmong(row, {1.75, 0.4});
+  EXPECT_NEAR((at.inside - Vec2(1.75, 0)).norm(), 0, 1e-12);
+  ASSERT_EQ(at.neighbours.size(), 2u);
+  EXPECT_EQ(at.neighbours[0].index, 2u);
+  EXPECT_NEAR(at.neighbours[0].weight, 0.75, 1e-12);
+  EXPECT_EQ(at.neighbours[1].index, 1u);
+  // Beyond the end, the last one is the only neighbour.
+  const LatticePlace end = PlaceAmong(row, {6, 0});
+  EXPECT_EQ(end.inside, Vec2(4, 0));
+  ASSERT_EQ(end.neighbours.size(), 1u);
+  EXPECT_EQ(end.neighbours[0].index, 4u);
+}
+
+TEST(PlaceAmong, BesideAnAreaItIsMovedInwards) {
+  const LatticePlace at = PlaceAmong(Grid(3, 3), {1, 2.5});
+  EXPECT_NEAR((at.inside - Vec2(1, 2)).norm(), 0, 0.01);
+  EXPECT_GE(at.neighbours.size(), 2u);
 }
 
 TEST(Lattice, IsSpacedEvenlyAndKeepsAwayFromThePoints) {

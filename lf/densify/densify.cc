@@ -250,7 +250,7 @@ Result<void> Densifier::CheckPoses() {
   constexpr size_t kMostChecked = 400;
   if (light_field_.size() > kMostChecked) return {};
   LF_ASSIGN_OR_RETURN(const std::vector<ComparedPair> pairs,
-                      ComparePairs(light_field_, *store_, plan_.plane.points, plan_.range, pool_));
+                      ComparePairs(light_field_, *store_, plan_.serving, plan_.range, pool_));
   const std::vector<std::vector<uint32_t>> groups = ContradictingGroups(light_field_.size(), pairs);
   if (groups.empty()) return {};
   std::vector<std::string> source = {FileArgument(options_.source_name)};
@@ -271,6 +271,9 @@ Result<void> Densifier::Test() {
   }
   const double gain_db = MedianGainDb(report_.tests);
   if (gain_db >= kLeastGainDb || options_.choices.force) return {};
+  // A mean of neighbours may be as right in one depth, but it cannot blur what a lens blurs.
+  if (!options_.choices.frames.empty() && gain_db >= 0 && MedianPsnrDb(report_.tests) >= kRightDb)
+    return {};
   const auto worst =
       std::min_element(report_.tests.begin(), report_.tests.end(),
                        [](const LeftOut& a, const LeftOut& b) { return a.GainDb() < b.GainDb(); });

@@ -12,8 +12,11 @@
 
 #include "lf/core/log.h"
 #include "lf/core/median.h"
+#include "lf/densify/camera_chart.h"
 #include "lf/densify/camera_lattice.h"
+#include "lf/densify/camera_plane.h"
 #include "lf/densify/depth_search.h"
+#include "lf/densify/lens_places.h"
 #include "lf/densify/pair_map.h"
 #include "lf/densify/working_image.h"
 #include "lf/light_field/model/capture_geometry.h"
@@ -43,6 +46,7 @@ double ShiftOf(const LightField& light_field, const DensifyPlan& plan, int divis
     std::vector<double> of_camera;
     for (const uint32_t other : plan.compare_with[i])
       of_camera.push_back(ShiftPerInverseDepth(camera, light_field.Camera(LfImageId{other})));
+    if (of_camera.empty()) continue;
     std::sort(of_camera.begin(), of_camera.end());
     of_camera.resize(std::min(most, of_camera.size()));
     shifts.push_back(std::accumulate(of_camera.begin(), of_camera.end(), 0.0) /
@@ -54,8 +58,8 @@ double ShiftOf(const LightField& light_field, const DensifyPlan& plan, int divis
 Result<void> CheckCameras(const CameraPlane& plane) {
   if (!AreOnOneLine(plane.points)) return {};
   return InputError(fmt::format(
-      "the {} LF cameras stand on one line, or at one place: virtual LF images can only be made "
-      "between LF cameras that surround an area",
+      "the {} LF cameras stand on one line, or at one place, and surround no area that could be "
+      "filled: give the camera path of a film, so that virtual LF images are made for its lenses",
       plane.points.size()));
 }
 
@@ -131,13 +135,69 @@ std::vector<VirtualCamera> Contributing(const LightField& light_field,
   return result;
 }
 
-// Chooses the virtual LF cameras; if there are too many, they stand less densely.
-Result<void> ChooseVirtual(const LightField& light_field, const DensifyChoices& choices,
-                           ThreadPool& pool, DensifyPlan* plan) {
+// Makes the lattice coarser until there are at most as many virtual LF cameras as allowed.
+//   cameras_at  returns those of a lattice with a distance
+template <class CamerasAt>
+void ChooseDistance(double distance_w, size_t most, const CamerasAt& cameras_at,
+                    DensifyPlan* plan) {
   constexpr double kCoarser = 1.02;
-  constexpr double kMostPlaces = 400'000;  // more would take minutes
+  for (plan->distance_w = distance_w;; plan->distance_w *= kCoarser) {
+    const std::optional<size_t> count = cameras_at(plan->distance_w);
+    if (!count) return;
+    plan->distance_w *= std::max(
+        1.0, 0.98 / kCoarser * std::sqrt(static_cast<double>(*count) / static_cast<double>(most)));
+  }
+}
+
+constexpr double kMostPlaces = 400'000;  // more would take minutes
+
+// Puts virtual LF cameras among the recorded ones.
+Result<void> FillCapture(const LightField& light_field, const DensifyChoices& choices,
+                         double wanted_w, DensifyPlan* plan) {
+  LF_ASSIGN_OR_RETURN(const CameraPlane plane, CameraPlaneOf(light_field));
+  LF_RETURN_IF_ERROR(CheckCameras(plane));
   // Beyond the LF cameras, virtual ones may only stand on a plane.
-  const double outside_w = plan->plane.is_unrolled ? 0 : kOutside * MedianSpacing(light_field);
+  const double outside_w = plane.is_unrolled ? 0 : kOutside * MedianSpacing(light_field);
+  ChooseDistance(
+      std::max(wanted_w, DistanceForPlaces(plane.points, kMostPlaces)), choices.most_virtual,
+      [&](double distance_w) -> std::optional<size_t> {
+        const std::vector<LatticePlace> lattice = LatticeAmong(plane.points, distance_w, outside_w);
+        if (lattice.size() > choices.most_virtual) return lattice.size();
+        for (const LatticePlace& at : lattice)
+          plan->virtual_cameras.push_back(VirtualCameraAt(light_field, plane, at, choices.divisor));
+        return std::nullopt;
+      },
+      plan);
+  return {};
+}
+
+// Puts virtual LF cameras into the lenses of the film.
+void FillLenses(const LightField& light_field, const DensifyChoices& choices,
+                const FilmLenses& lenses, double wanted_w, ThreadPool& pool, DensifyPlan* plan) {
+  const double outside_w = kOutside * MedianSpacing(light_field);
+  ChooseDistance(
+      std::max(wanted_w, std::sqrt(lenses.Area_w2() / kMostPlaces)), choices.most_virtual,
+      [&](double distance_w) -> std::optional<size_t> {
+        const LensPlaces found = lenses.Places(distance_w, outside_w);
+        plan->filled_radius_w = found.filled_radius_w;
+        // Some of them may contribute nothing.
+        if (found.places.size() > 2 * choices.most_virtual) return found.places.size();
+        plan->virtual_cameras.clear();
+        for (const LensPlace& place : found.places)
+          plan->virtual_cameras.push_back(lenses.CameraAt(place, distance_w, choices.divisor));
+        plan->virtual_cameras =
+            Contributing(light_field, std::move(plan->virtual_cameras), choices.frames, pool);
+        if (plan->virtual_cameras.size() > choices.most_virtual)
+          return plan->virtual_cameras.size();
+        return std::nullopt;
+      },
+      plan);
+}
+
+// Chooses the virtual LF cameras; if there are too many, they stand less densely.
+//   lenses  of the film; null: there is no film
+Result<void> ChooseVirtual(const LightField& light_field, const DensifyChoices& choices,
+                           const FilmLenses* lenses, ThreadPool& pool, DensifyPlan* plan) {
   const double wanted_w = DistanceFor(light_field, *plan, choices);
   // The mean distance of compared LF cameras; rows may be farther apart than columns.
   const double recorded_w = plan->shift_per_depth_px /
@@ -149,35 +209,20 @@ Result<void> ChooseVirtual(const LightField& light_field, const DensifyChoices& 
         recorded_w, wanted_w, choices.spacing_px * recorded_w / wanted_w);
     return {};
   }
-  const auto most = static_cast<double>(choices.most_virtual);
-  for (plan->distance_w = std::max(wanted_w, DistanceForPlaces(plan->plane.points, kMostPlaces));
-       ;) {
-    const std::vector<LatticePlace> lattice =
-        LatticeAmong(plan->plane.points, plan->distance_w, outside_w);
-    auto count = static_cast<double>(lattice.size());
-    if (count <= most || !choices.frames.empty()) {
-      plan->virtual_cameras.clear();
-      for (const LatticePlace& at : lattice)
-        plan->virtual_cameras.push_back(
-            VirtualCameraAt(light_field, plan->plane, at, choices.divisor));
-      if (!choices.frames.empty())
-        plan->virtual_cameras =
-            Contributing(light_field, std::move(plan->virtual_cameras), choices.frames, pool);
-      count = static_cast<double>(plan->virtual_cameras.size());
-      if (count <= most) break;
-    }
-    plan->distance_w *= std::max(kCoarser, 0.98 * std::sqrt(count / most));
-  }
+  if (lenses)
+    FillLenses(light_field, choices, *lenses, wanted_w, pool, plan);
+  else
+    LF_RETURN_IF_ERROR(FillCapture(light_field, choices, wanted_w, plan));
   plan->spacing_px = choices.spacing_px * plan->distance_w / wanted_w;
-  if (plan->virtual_cameras.empty() && choices.frames.empty())
+  if (plan->virtual_cameras.empty() && !lenses)
     return UsageError(fmt::format(
         "no virtual LF camera has room between the {} LF cameras, which are {:.4g} apart, if "
         "virtual ones are {:.4g} apart: ask for a smaller {{spacing}}, or raise {{most}} ({})",
-        plan->plane.points.size(), recorded_w, plan->distance_w, choices.most_virtual));
+        light_field.size(), recorded_w, plan->distance_w, choices.most_virtual));
   if (plan->virtual_cameras.empty())
     return UsageError(
-        "no place between the LF cameras contributes to the frames: check the camera path with "
-        "lfcammvminfo, or leave it out");
+        "no virtual LF camera in the lenses of the frames has LF cameras around it: check the "
+        "camera path with lfcammvminfo, or leave it out");
   return {};
 }
 
@@ -204,9 +249,16 @@ Result<DensifyPlan> PlanDensify(const LightField& light_field, const LfImageStor
                                 const DensifyChoices& choices, ThreadPool& pool) {
   DensifyPlan plan;
   plan.divisor = choices.divisor;
-  LF_ASSIGN_OR_RETURN(plan.plane, CameraPlaneOf(light_field));
-  LF_RETURN_IF_ERROR(CheckCameras(plan.plane));
-  plan.compare_with = CompareWith(plan.plane.points);
+  plan.subject = AxesMeetingPoint(light_field);
+  plan.compare_with = CompareWith(light_field, plan.subject);
+  std::optional<FilmLenses> lenses;
+  if (choices.frames.empty()) {
+    plan.serving.resize(light_field.size());
+    std::iota(plan.serving.begin(), plan.serving.end(), 0U);
+  } else {
+    lenses.emplace(light_field, choices.frames);
+    plan.serving = lenses->Serving();
+  }
   if (choices.depths) {
     plan.range = {1 / choices.depths->far_w, 1 / choices.depths->near_w};
   } else {
@@ -216,13 +268,15 @@ Result<DensifyPlan> PlanDensify(const LightField& light_field, const LfImageStor
   LF_RETURN_IF_ERROR(CheckReach(light_field, plan, choices.divisor, choices.force));
   plan.planes = PlanesFor(plan.ShiftPx());
   plan.tolerance = ToleranceFor(plan.range, plan.planes, plan.shift_per_depth_px);
-  LF_RETURN_IF_ERROR(ChooseVirtual(light_field, choices, pool, &plan));
+  LF_RETURN_IF_ERROR(ChooseVirtual(light_field, choices, lenses ? &*lenses : nullptr, pool, &plan));
   std::set<uint32_t> sources;
   for (const VirtualCamera& camera : plan.virtual_cameras)
     for (const WeightedPoint& source : camera.sources) sources.insert(source.index);
   plan.sources.assign(sources.begin(), sources.end());
-  // Depths are compared with those of neighbours twice.
-  const std::set<uint32_t> swept = WithCompared(WithCompared(sources, plan), plan);
+  // Depths are compared with those of neighbours twice. A film's second comparison does with the
+  // neighbours that were compared once.
+  std::set<uint32_t> swept = WithCompared(sources, plan);
+  if (!lenses) swept = WithCompared(swept, plan);
   plan.swept.assign(swept.begin(), swept.end());
   return plan;
 }

@@ -3,6 +3,7 @@
 // and where virtual LF cameras stand.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -13,7 +14,6 @@
 #include "lf/core/geometry.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
-#include "lf/densify/camera_plane.h"
 #include "lf/densify/inverse_depths.h"
 #include "lf/densify/virtual_cameras.h"
 #include "lf/light_field/model/light_field.h"
@@ -31,15 +31,18 @@ struct DensifyChoices {
   double spacing_px = 1.5;
   size_t most_virtual = 2000;  // if more virtual LF images are needed, they stand less densely
   int divisor = 1;             // a pixel of a virtual LF image is divisor x divisor LF pixels
-  // Frames that will be rendered; only virtual LF images that contribute to one of them are made.
-  // Empty: virtual LF images are made wherever LF cameras are around.
+  // Frames that will be rendered: virtual LF cameras are put into their lenses (lens_places.h).
+  // Empty: they are put wherever LF cameras are around.
   std::vector<RenderCamera> frames;
   bool force = false;  // true: no light field is refused
 };
 
 struct DensifyPlan {
-  CameraPlane plane;
+  std::optional<Vec3> subject;                      // AxesMeetingPoint() of the light field
   std::vector<std::vector<uint32_t>> compare_with;  // CompareWith() of the LF cameras
+  // LF cameras of which virtual ones may be made, ascending: FilmLenses::Serving(), or all if there
+  // are no frames. Their poses are checked.
+  std::vector<uint32_t> serving;
   InverseDepths range;
   int divisor = 1;                // DensifyChoices::divisor
   int planes = 0;                 // number of inverse depths that are compared
@@ -50,6 +53,9 @@ struct DensifyPlan {
   // Says that the LF cameras are dense enough, and then there are no virtual ones; otherwise empty.
   std::string dense;
   std::vector<VirtualCamera> virtual_cameras;
+  // Least radius up to which a lens of the film is filled with virtual LF cameras; infinity if all
+  // lenses are filled, or if there are no frames.
+  double filled_radius_w = INFINITY;
   std::vector<uint32_t> swept;    // LF images whose depths are searched, ascending
   std::vector<uint32_t> sources;  // those that virtual LF images are made of, ascending
 
@@ -67,9 +73,10 @@ double ToleranceFor(const InverseDepths& range, int planes, double shift_per_dep
 
 // Makes the plan, or says why the light field cannot be densified.
 //   store  of the light field, with Mosaics::kToRgb
-// kInput: fewer than three LF cameras, or all on one line; LF images too far from one another (the
-// message has the shift or the angle); or an error of FindInverseDepths(). kUsage: no virtual LF
-// image contributes to the frames, or most_virtual is too small.
+// kInput: LF images too far from one another (the message has the shift or the angle); without
+// frames, fewer than three LF cameras, or all on one line, or all around the scene; or an error of
+// FindInverseDepths(). kUsage: no virtual LF image contributes to the frames, or most_virtual is
+// too small.
 Result<DensifyPlan> PlanDensify(const LightField& light_field, const LfImageStore& store,
                                 const DensifyChoices& choices, ThreadPool& pool);
 

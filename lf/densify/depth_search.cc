@@ -57,23 +57,48 @@ void AppendSure(const LightField& light_field, const std::optional<Vec3>& subjec
                        {0, 0, reference.width(), reference.height()}, &costs);
   const ChosenPlanes chosen = ChoosePlanes(costs, reference.tones, true);
   const int good = GoodCost(reference.tones, chosen);
+  // A depth at the end of the range may lie beyond it, or match by chance. Only a stated range has
+  // a far end that means something.
+  const auto first = light_field.depth_range ? -1.0f : 2.0f;
+  const auto last = static_cast<float>(planes - 3);
   for (int y = kSearchedBorder; y < reference.height() - kSearchedBorder; ++y)
     for (int x = kSearchedBorder; x < reference.width() - kSearchedBorder; ++x)
       if (TextureAt(reference.tones, x, y) > kTexture && chosen.cost.at(x, y) < good &&
-          chosen.lead.at(x, y) > kClear && chosen.place.at(x, y) < static_cast<float>(planes - 3))
+          chosen.lead.at(x, y) > kClear && chosen.place.at(x, y) > first &&
+          chosen.place.at(x, y) < last)
         found->push_back(range.least +
                          static_cast<double>(chosen.place.at(x, y)) * extent / (planes - 1));
 }
 
-InverseDepths RangeOf(std::vector<double> depths) {
-  constexpr double kOutermost = 0.005, kWidened = 0.06, kFewBeyond = 0.02;
-  std::sort(depths.begin(), depths.end());
-  const auto at = [&](double share) {
-    return depths[static_cast<size_t>(share * static_cast<double>(depths.size() - 1))];
-  };
-  const double least = at(kOutermost), greatest = at(1 - kOutermost);
+double Quantile(std::span<const double> sorted, double share) {
+  return sorted[static_cast<size_t>(share * static_cast<double>(sorted.size() - 1))];
+}
+
+//   of_images  inverse depths found in each LF image
+InverseDepths RangeOf(std::vector<std::vector<double>> of_images) {
+  constexpr double kOutermost = 0.005, kWidened = 0.06, kFewBeyond = 0.02, kAlone = 0.1;
+  constexpr size_t kLeastImages = 4, kLeastDepths = 50;
+  std::vector<double> all, leasts, greatests;
+  for (std::vector<double>& depths : of_images) {
+    std::sort(depths.begin(), depths.end());
+    all.insert(all.end(), depths.begin(), depths.end());
+    if (depths.size() < kLeastDepths) continue;
+    leasts.push_back(Quantile(depths, kOutermost));
+    greatests.push_back(Quantile(depths, 1 - kOutermost));
+  }
+  std::sort(all.begin(), all.end());
+  std::sort(leasts.begin(), leasts.end());
+  std::sort(greatests.rbegin(), greatests.rend());
+  double least = Quantile(all, kOutermost), greatest = Quantile(all, 1 - kOutermost);
+  if (leasts.size() >= kLeastImages) {
+    // One LF image alone does not widen the range by much, because its pose or its light may differ
+    // from those of its neighbours.
+    const double extent = greatests[1] - leasts[1];
+    least = std::max(least, leasts[1] - kAlone * extent);
+    greatest = std::min(greatest, greatests[1] + kAlone * extent);
+  }
   const double margin = kWidened * (greatest - least) + 1e-3 * std::abs(greatest);
-  const bool few_beyond = at(kFewBeyond) >= 0;
+  const bool few_beyond = Quantile(all, kFewBeyond) >= 0;
   return {few_beyond ? std::max(0.0, least - margin) : least - margin, greatest + margin};
 }
 
@@ -126,15 +151,14 @@ Result<InverseDepths> FindInverseDepths(const LightField& light_field, const LfI
     AppendSure(light_field, subject, *loaded[0], views, &depths[i]);
   });
   if (error) return *error;
-  std::vector<double> all;
-  for (const std::vector<double>& of_image : depths)
-    all.insert(all.end(), of_image.begin(), of_image.end());
-  if (all.size() < kLeastDepths)
+  size_t found = 0;
+  for (const std::vector<double>& of_image : depths) found += of_image.size();
+  if (found < kLeastDepths)
     return InputError(fmt::format(
         "depths of the scene: only {} pixels of {} LF images have a sure depth, expected at least "
         "{}: the LF images overlap too little or lack texture; state the depths by {{depths}}",
-        all.size(), count, kLeastDepths));
-  return RangeOf(std::move(all));
+        found, count, kLeastDepths));
+  return RangeOf(std::move(depths));
 }
 
 }  // namespace lf

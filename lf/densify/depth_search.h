@@ -33,8 +33,9 @@ InverseDepths SearchedRange(const PinholeCamera& camera, double shift_per_depth_
 // Compares eight LF images, spread over the light field and reduced to about 200 pixels, with their
 // neighbours at the inverse depths of SearchedRange(). Returns the range of the depths of pixels
 // with texture that match well and clearly, without the outermost half percent on each side,
-// widened by 6 %. The range does not go beyond infinity unless the depths of many pixels do, as
-// those of rectified images may.
+// widened by 6 %. A single LF image can only widen the range of the others by a tenth. The range
+// does not go beyond infinity unless the depths of many pixels do, as those of rectified images
+// may.
 //   compare_with  CompareWith() of the LF cameras
 // kInput: an LF image cannot be loaded, or fewer than 200 pixels have a sure depth.
 Result<InverseDepths> FindInverseDepths(const LightField& light_field, const LfImageStore& store,

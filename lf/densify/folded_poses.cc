@@ -17,7 +17,6 @@
 
 #include "lf/core/median.h"
 #include "lf/core/shell_word.h"
-#include "lf/densify/natural_neighbours.h"
 #include "lf/densify/semi_global.h"
 #include "lf/densify/working_images.h"
 
@@ -132,16 +131,21 @@ std::string RunsText(const LightField& light_field, std::span<const uint32_t> id
 
 Result<std::vector<ComparedPair>> ComparePairs(const LightField& light_field,
                                                const LfImageStore& store,
-                                               std::span<const Vec2> points,
+                                               std::span<const uint32_t> ids,
                                                const InverseDepths& range, ThreadPool& pool) {
   std::set<std::pair<uint32_t, uint32_t>> wanted;
-  for (uint32_t i = 0; i < points.size(); ++i) {
-    const std::vector<uint32_t> order = ByDistance(points, points[i]);
-    for (size_t k = 0, taken = 0; k < order.size() && taken < kNearest; ++k) {
-      if (order[k] == i) continue;
-      wanted.insert(std::minmax(i, order[k]));
-      ++taken;
-    }
+  const auto distance = [&](uint32_t a, uint32_t b) {
+    return (light_field.Camera(LfImageId{a}).CentreWorld() -
+            light_field.Camera(LfImageId{b}).CentreWorld())
+        .norm();
+  };
+  for (const uint32_t id : ids) {
+    std::vector<std::pair<double, uint32_t>> order;
+    for (const uint32_t other : ids)
+      if (other != id) order.emplace_back(distance(id, other), other);
+    std::sort(order.begin(), order.end());
+    for (size_t k = 0; k < std::min(kNearest, order.size()); ++k)
+      wanted.insert(std::minmax(id, order[k].second));
   }
   const int divisor = std::max(1, light_field.intrinsics.front().width_px / kComparedWidth);
   WorkingImages images(light_field, store, divisor, std::numeric_limits<size_t>::max());
@@ -163,8 +167,8 @@ Result<std::vector<ComparedPair>> ComparePairs(const LightField& light_field,
   std::vector<ComparedPair> pairs;
   for (size_t i = 0; i < list.size(); ++i)
     if (shares[i])
-      pairs.push_back({list[i].first, list[i].second,
-                       (points[list[i].first] - points[list[i].second]).norm(), *shares[i]});
+      pairs.push_back(
+          {list[i].first, list[i].second, distance(list[i].first, list[i].second), *shares[i]});
   return pairs;
 }
 

@@ -29,14 +29,14 @@ struct ComparedPair {
   double agreeing_share = 0;
 };
 
-// Compares each LF image with the six nearest ones, reduced to about 100 pixels. Pairs with too
-// little texture are left out.
-//   points  of CameraPlane
-//   range   of the scene
+// Compares each of some LF images with the six of them whose LF cameras are nearest, reduced to
+// about 100 pixels. Pairs with too little texture are left out.
+//   ids    the LF images that are compared
+//   range  of the scene
 // Errors of LoadWorkingImage().
 Result<std::vector<ComparedPair>> ComparePairs(const LightField& light_field,
                                                const LfImageStore& store,
-                                               std::span<const Vec2> points,
+                                               std::span<const uint32_t> ids,
                                                const InverseDepths& range, ThreadPool& pool);
 
 // Returns groups of LF images that contradict each other, the largest first, each ascending; empty

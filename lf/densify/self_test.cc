@@ -9,8 +9,11 @@
 #include <utility>
 
 #include "lf/core/median.h"
+#include "lf/densify/camera_chart.h"
+#include "lf/densify/camera_lattice.h"
 #include "lf/densify/depth_plane.h"
 #include "lf/densify/synthesis.h"
+#include "lf/densify/virtual_cameras.h"
 #include "lf/densify/working_images.h"
 
 namespace lf {
@@ -19,6 +22,7 @@ namespace {
 constexpr int kTestedWidth = 200;
 constexpr size_t kMostTests = 8;
 constexpr int kBlendDepths = 12;
+constexpr size_t kLeastAround = 3;  // LF cameras that surround another one
 
 // Returns the tones of light, smoothed by two means over 3 x 3 pixels. NaN where there is no light.
 Image<float> SmoothTones(const Image<uint16_t>& light, const ToneCurve& curve) {
@@ -57,14 +61,36 @@ double PsnrDb(const Image<float>& a, const Image<float>& b) {
   return -10 * std::log10(std::max(squares / count, kLeast));
 }
 
-// Returns the natural neighbours of a point among the other points; none if it is on their hull.
-std::vector<WeightedPoint> NeighboursWithout(std::vector<Vec2> points, uint32_t left_out) {
-  const Vec2 place = points[left_out];
-  points.erase(points.begin() + left_out);
-  std::vector<WeightedPoint> neighbours = NaturalNeighbours(points, place);
-  for (WeightedPoint& neighbour : neighbours)
-    if (neighbour.index >= left_out) ++neighbour.index;
-  return neighbours;
+// Returns the LF cameras that a chart shows, without the one that it is around, and the place of
+// this one among them. Empty: there are no others.
+struct Others {
+  std::vector<uint32_t> ids;
+  std::vector<Vec2> points;  // [ids]
+  LatticePlace at;
+
+  // True if other LF cameras are on all sides.
+  bool Surround() const { return at.neighbours.size() >= kLeastAround && at.inside == at.place; }
+  // True if it is almost on the line between others.
+  bool HaveBetween() const {
+    constexpr double kMostBeside = 0.25;  // of the distance to the nearest one
+    if (at.neighbours.size() < 2) return false;
+    double nearest = INFINITY;
+    for (const Vec2& point : points) nearest = std::min(nearest, point.norm());
+    return (at.inside - at.place).norm() <= kMostBeside * nearest;
+  }
+};
+Others OthersAround(const LightField& light_field, const DensifyPlan& plan, uint32_t left_out) {
+  const PinholeCamera camera = light_field.Camera(LfImageId{left_out});
+  const CameraChart chart =
+      ChartAround(light_field, camera, InverseDistanceOf(camera, plan.subject));
+  Others others;
+  for (size_t i = 0; i < chart.ids.size(); ++i) {
+    if (chart.ids[i] == left_out) continue;
+    others.ids.push_back(chart.ids[i]);
+    others.points.push_back(chart.points[i]);
+  }
+  if (!others.ids.empty()) others.at = PlaceAmong(others.points, Vec2::Zero());
+  return others;
 }
 
 // Returns the angle at which two cameras see the point at inverse depth z on the axis of the first.
@@ -129,12 +155,14 @@ Result<Tester::Group> Tester::SweepWithout(uint32_t left_out, std::span<const ui
 }
 
 Result<LeftOut> Tester::Test(uint32_t left_out) {
-  std::vector<WeightedPoint> neighbours = NeighboursWithout(plan_.plane.points, left_out);
+  const Others others = OthersAround(light_field_, plan_, left_out);
+  std::vector<WeightedPoint> neighbours = others.at.neighbours;
+  if (neighbours.size() < kLeastAround) AddNearest(others.points, Vec2::Zero(), &neighbours);
   if (neighbours.size() > kMostSources) neighbours.resize(kMostSources);
   std::vector<uint32_t> ids;
   double sum = 0;
   for (const WeightedPoint& neighbour : neighbours) {
-    ids.push_back(neighbour.index);
+    ids.push_back(others.ids[neighbour.index]);
     sum += neighbour.weight;
   }
   LF_ASSIGN_OR_RETURN(Group group, SweepWithout(left_out, ids));
@@ -168,9 +196,13 @@ Result<LeftOut> Tester::Test(uint32_t left_out) {
 Result<std::vector<LeftOut>> TestByLeavingOut(const LightField& light_field,
                                               const LfImageStore& store, const DensifyPlan& plan,
                                               ThreadPool& pool) {
-  std::vector<uint32_t> inner;
-  for (uint32_t i = 0; i < light_field.size(); ++i)
-    if (NeighboursWithout(plan.plane.points, i).size() >= 3) inner.push_back(i);
+  std::vector<uint32_t> inner, between;
+  for (const uint32_t id : plan.sources) {
+    const Others others = OthersAround(light_field, plan, id);
+    if (others.Surround()) inner.push_back(id);
+    if (others.HaveBetween()) between.push_back(id);
+  }
+  if (inner.size() < kMostTests / 2) inner = std::move(between);
   const size_t count = std::min(kMostTests, inner.size());
   std::vector<LeftOut> tests(count);
   Tester tester(light_field, store, plan);

@@ -29,15 +29,19 @@ struct LeftOut {
 // not found, leave no gain.
 inline constexpr double kLeastGainDb = 1.5;
 
+// From this median on, virtual LF images that are not worse than the mean may fill the lenses of a
+// film.
+inline constexpr double kRightDb = 30;
+
 // From this median on, virtual LF images are about as right as pixels can tell. So is a mean that
 // they hardly exceed.
 inline constexpr double kNearlyRightDb = 36;
 
-// Leaves out up to eight LF images in turn, spread over the light field, and compares each with the
-// virtual LF image that is made of its neighbours; both are reduced to about 200 pixels and
-// smoothed. The distances between LF cameras are therefore larger than they will be. LF images on
-// the hull of the LF cameras are not tested, because none surround them. Empty if there are no
-// others.
+// Leaves out up to eight of the sources of virtual LF images in turn, spread over them, and
+// compares each with the virtual LF image that is made of its neighbours; both are reduced to about
+// 200 pixels and smoothed. The distances between LF cameras are therefore larger than they will be.
+// LF images on the hull of the LF cameras are not tested, because none surround them. If fewer than
+// four are inside it, as in a row, those between two others are tested. Empty if there are none.
 // Errors of LoadWorkingImage().
 Result<std::vector<LeftOut>> TestByLeavingOut(const LightField& light_field,
                                               const LfImageStore& store, const DensifyPlan& plan,

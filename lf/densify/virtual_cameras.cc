@@ -13,9 +13,24 @@ constexpr size_t kSources = 6;
 constexpr double kExtraWeight = 0.06;  // weight of a source that is no natural neighbour
 constexpr double kLeastWeight = 0.03;
 
-// Adds the nearest LF cameras that are no natural neighbours, and makes all weights add up to 1.
-void AddExtra(std::span<const Vec2> points, const Vec2& place,
-              std::vector<WeightedPoint>* sources) {
+Intrinsics MeanIntrinsics(std::span<const PinholeCamera> cameras, std::span<const double> weights) {
+  Intrinsics mean = cameras[0].intrinsics;
+  mean.fx_px = mean.fy_px = mean.cx_px = mean.cy_px = mean.skew_px = 0;
+  for (size_t i = 0; i < cameras.size(); ++i) {
+    const Intrinsics& k = cameras[i].intrinsics;
+    mean.fx_px += weights[i] * k.fx_px;
+    mean.fy_px += weights[i] * k.fy_px;
+    mean.cx_px += weights[i] * k.cx_px;
+    mean.cy_px += weights[i] * k.cy_px;
+    mean.skew_px += weights[i] * k.skew_px;
+  }
+  return mean;
+}
+
+}  // namespace
+
+void AddNearest(std::span<const Vec2> points, const Vec2& place,
+                std::vector<WeightedPoint>* sources) {
   if (sources->size() > kSources) sources->resize(kSources);
   while (sources->size() < std::min(kSources, points.size())) {
     uint32_t nearest = UINT32_MAX;
@@ -35,22 +50,6 @@ void AddExtra(std::span<const Vec2> points, const Vec2& place,
     sum += source.weight = std::max(source.weight, kLeastWeight);
   for (WeightedPoint& source : *sources) source.weight /= sum;
 }
-
-Intrinsics MeanIntrinsics(std::span<const PinholeCamera> cameras, std::span<const double> weights) {
-  Intrinsics mean = cameras[0].intrinsics;
-  mean.fx_px = mean.fy_px = mean.cx_px = mean.cy_px = mean.skew_px = 0;
-  for (size_t i = 0; i < cameras.size(); ++i) {
-    const Intrinsics& k = cameras[i].intrinsics;
-    mean.fx_px += weights[i] * k.fx_px;
-    mean.fy_px += weights[i] * k.fy_px;
-    mean.cx_px += weights[i] * k.cx_px;
-    mean.cy_px += weights[i] * k.cy_px;
-    mean.skew_px += weights[i] * k.skew_px;
-  }
-  return mean;
-}
-
-}  // namespace
 
 VirtualCamera VirtualCameraAt(const LightField& light_field, const CameraPlane& plane,
                               const LatticePlace& at, int divisor) {
@@ -72,7 +71,7 @@ VirtualCamera VirtualCameraAt(const LightField& light_field, const CameraPlane& 
   result.camera.cam_from_world.rotation = MeanRotation(rotations, weights);
   result.camera.cam_from_world.translation = -(result.camera.cam_from_world.rotation * centre);
   result.sources = at.neighbours;
-  AddExtra(plane.points, at.place, &result.sources);
+  AddNearest(plane.points, at.place, &result.sources);
   return result;
 }
 

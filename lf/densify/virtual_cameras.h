@@ -19,6 +19,11 @@ struct VirtualCamera {
   std::vector<WeightedPoint> sources;  // LF images with their weights
 };
 
+// Adds the nearest points that are no sources yet, until there are six or no more, and makes all
+// weights add up to 1.
+void AddNearest(std::span<const Vec2> points, const Vec2& place,
+                std::vector<WeightedPoint>* sources);
+
 // Returns the virtual LF camera at a place of the plane. Its position, direction and intrinsics are
 // the means of those of the neighbours; a place outside the hull of the LF cameras moves it along
 // the plane. Its sources are the neighbours and the nearest other LF cameras, six in all, unless
