@@ -20,6 +20,7 @@
 #include "lf/core/log.h"
 #include "lf/core/parse_number.h"
 #include "lf/core/shell_word.h"
+#include "lf/densify/densify_trial.h"
 #include "lf/focus/example_path.h"
 #include "lf/import/paths/write_path.h"
 #include "lf/light_field/model/keep_images.h"
@@ -32,12 +33,16 @@ constexpr lf::HelpTexts kHelp = {
     .usage = "  lfexample LIGHTFIELD -o PATH.yaml [OPTIONS]",
     .examples = R"(  lfexample capture/ -o path.yaml
   lfexample capture/transforms.json -o orbit.yaml --move orbit --camera 364
-  lfexample capture/ -o path.yaml --focus 8.12)",
+  lfexample capture/ -o path.yaml --focus 8.12
+  lfexample capture/ -o path.yaml --densify     # photographs far apart, and yet a smooth blur)",
     .details =
         R"(The path starts at an LF camera and focuses on the nearest depth that much of its image shows. The
 program finds this depth by comparing the image with the images around it; if that fails, from the
-points of a COLMAP model. A warning says when the depth is uncertain, and what to try. Render the
-path with:
+points of a COLMAP model. A warning says when the depth is uncertain, and what to try.
+
+If photographs are far apart, a lens shows copies of what is out of focus, and the path has almost a
+pinhole. --densify chooses a lens that virtual LF images fill (doc/densify.md), and tests whether
+they would be right. Render the path with:
   lfrenderer LIGHTFIELD PATH -o DIR)",
 };
 
@@ -114,10 +119,58 @@ void WarnOfDoubt(const lf::ExamplePath& example, const std::string& light_field,
       lf::ShellCommand(command));
 }
 
+// Says whether virtual LF images will help a film; if not, the reason. They are tested by leaving
+// LF images out.
+lf::Result<std::string> WhyNotDensify(const lf::LightField& light_field,
+                                      const lf::LfImageStore& store, const lf::CameraPath& path,
+                                      lf::ThreadPool& pool) {
+  lf::DensifyChoices choices;
+  choices.frames.assign(path.AllInstants().begin(), path.AllInstants().end());
+  const lf::Result<lf::DensifyTrial> trial = lf::TryDensify(light_field, store, choices, pool);
+  if (!trial) {
+    if (trial.error().kind != lf::ErrorKind::kInput && trial.error().kind != lf::ErrorKind::kUsage)
+      return trial.error();
+    return trial.error().message;
+  }
+  if (!trial->objection.empty()) return trial->objection;
+  if (trial->tests.empty())
+    lf::LogWarning(
+        "it is not sure whether virtual LF images help, because no LF camera stands between "
+        "others, so that none can be tested");
+  else
+    lf::LogInfo(
+        "virtual LF images help: {} LF images, left out and made from their neighbours, are {:.1f} "
+        "dB better than a mean of these (median; {:.0f} dB)",
+        trial->tests.size(), lf::MedianGainDb(trial->tests), lf::MedianPsnrDb(trial->tests));
+  return std::string();
+}
+
+// Makes a path. If a lens for virtual LF images is asked for and these do not help, warns, and
+// makes the path for the recorded ones: options->densify is false then.
+lf::Result<lf::ExamplePath> MakePath(const lf::LightField& light_field,
+                                     const lf::LfImageStore& store, const std::string& output,
+                                     lf::ExampleOptions* options, lf::ThreadPool& pool) {
+  LF_ASSIGN_OR_RETURN(lf::ExamplePath example,
+                      lf::MakeExamplePath(light_field, store, *options, pool));
+  // A path that cannot be parsed is a bug of ours, and is reported here instead of by lfrenderer.
+  LF_ASSIGN_OR_RETURN(const lf::CameraPath path,
+                      lf::ParsePathYaml(example.yaml, output, light_field.unit_m));
+  if (!options->densify || !example.doubt.empty()) return example;
+  LF_ASSIGN_OR_RETURN(const std::string why_not, WhyNotDensify(light_field, store, path, pool));
+  if (why_not.empty()) return example;
+  lf::LogWarning(
+      "--densify: virtual LF images do not help, so that the lens is chosen without "
+      "them: {}",
+      why_not);
+  options->densify = false;
+  return lf::MakeExamplePath(light_field, store, *options, pool);
+}
+
 // Returns the line that advises how to film the path.
 std::string NextOf(const lf::LightFieldArgument& input, const std::string& output,
-                   lf::ExampleMove move) {
+                   lf::ExampleMove move, bool is_densified) {
   std::vector<std::string> options = input.Words();
+  if (is_densified) options.emplace_back("--densify");
   if (move != lf::ExampleMove::kStatic)
     options.insert(options.end(), {"--video", lf::FreeName("film", ".mp4")});
   std::string line = lf::NextRender(
@@ -133,7 +186,7 @@ int main(int argc, char** argv) {
   lf::LightFieldArgument input;
   std::string output, move = "auto", camera = "-1";
   double focus = 0;
-  bool overwrite = false;
+  bool overwrite = false, densify = false;
   CLI::App& app = program.app();
   input.AddTo(app);
   lf::OptionGroup output_group(app, lf::kOutputGroup), picture(app, lf::kPictureGroup);
@@ -159,6 +212,12 @@ int main(int argc, char** argv) {
            "Focus distance in world units (automatic)\n"
            "0: the program estimates the distance of the subject from the LF images.")
       ->check(CLI::NonNegativeNumber);
+  picture.AddFlag(
+      "--densify", densify,
+      "Choose a lens that virtual LF images fill\n"
+      "Serves for photographs that are far apart. The program tests whether the virtual "
+      "LF images would be right, and chooses the lens without them if not. Render the "
+      "path with lfrenderer --densify.");
   program.AddCommonOptions({.threads = true, .verbose = true, .quiet = true});
 
   return program.Run(argc, argv, [&]() -> lf::Result<void> {
@@ -169,6 +228,7 @@ int main(int argc, char** argv) {
     lf::ExampleOptions options;
     options.move = *lf::ParseExampleMove(move);
     if (focus > 0) options.focus_distance_w = focus;
+    options.densify = densify;
     options.points_world = [&] {
       return lf::PointsSeenBy(input.path, light_field, options.camera);
     };
@@ -180,9 +240,7 @@ int main(int argc, char** argv) {
     if (!disagreement.text.empty()) options.doubt = "images and poses do not agree";
     LF_ASSIGN_OR_RETURN(options.camera, FindCamera(light_field, *store, camera));
     LF_ASSIGN_OR_RETURN(const lf::ExamplePath example,
-                        lf::MakeExamplePath(light_field, *store, options, pool));
-    // A path that cannot be parsed is a bug of ours, and is reported here instead of by lfrenderer.
-    LF_RETURN_IF_ERROR(lf::ParsePathYaml(example.yaml, output, light_field.unit_m));
+                        MakePath(light_field, *store, output, &options, pool));
     if (!overwrite) LF_RETURN_IF_ERROR(CheckKeepsEdits(output));
     LF_RETURN_IF_ERROR(lf::WriteFileAtomically(output, Stamped(example.yaml)));
     if (!disagreement.text.empty())
@@ -195,7 +253,8 @@ int main(int argc, char** argv) {
                 lf::StartWords(example.move), options.camera.value,
                 light_field.image_names[options.camera.value], example.focus_distance_w,
                 example.focus_reason, example.aperture_diameter_w, example.aperture_reason);
-    lf::LogInfo("{}", NextOf(input, output, example.move));
+    lf::LogInfo("{}",
+                NextOf(input, output, example.move, options.densify && example.doubt.empty()));
     return {};
   });
 }

@@ -80,7 +80,7 @@ TEST(ChartAround, ShowsTheSideThatLooksAtThePoint) {
   const LightField ring = Ring(35);
   const PinholeCamera camera = ring.Camera(LfImageId{0});
   const CameraChart chart = ChartAround(ring, camera, 1);
-  // Those at most 60 degrees away.
+  // It has the LF cameras at most 60 degrees away.
   ASSERT_EQ(chart.ids.size(), 11u);
   EXPECT_EQ(chart.ids[0], 0u);
   EXPECT_NEAR(chart.points[0].norm(), 0, 1e-12);

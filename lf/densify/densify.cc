@@ -269,29 +269,9 @@ Result<void> Densifier::Test() {
         "recorded ones");
     return {};
   }
-  const double gain_db = MedianGainDb(report_.tests);
-  if (gain_db >= kLeastGainDb || options_.choices.force) return {};
-  // A mean of neighbours may be as right in one depth, but it cannot blur what a lens blurs.
-  if (!options_.choices.frames.empty() && gain_db >= 0 && MedianPsnrDb(report_.tests) >= kRightDb)
-    return {};
-  const auto worst =
-      std::min_element(report_.tests.begin(), report_.tests.end(),
-                       [](const LeftOut& a, const LeftOut& b) { return a.GainDb() < b.GainDb(); });
-  const std::string reason =
-      MedianPsnrDb(report_.tests) >= kNearlyRightDb
-          ? std::string(
-                "The mean is nearly right, because neighbouring LF images differ little: render "
-                "the light field as it is, or try {force}")
-          : fmt::format(
-                "Poses may be wrong, for example where equal patterns were confused, or the depths "
-                "({:.4g} to {:.4g}): check the poses, state {{depths}}, or try {{force}}",
-                1 / plan_.range.greatest, plan_.range.least > 0 ? 1 / plan_.range.least : INFINITY);
-  return InputError(fmt::format(
-      "{} LF images were left out in turn and made from their neighbours: at {:.0f} dB, the result "
-      "is only {:.1f} dB better than a mean of the neighbours, expected at least {} dB (worst: {}, "
-      "{:.1f} dB). {}",
-      report_.tests.size(), MedianPsnrDb(report_.tests), gain_db, kLeastGainDb, worst->name,
-      worst->GainDb(), reason));
+  std::string objection = ObjectionOf(report_.tests, plan_.range, !options_.choices.frames.empty());
+  if (objection.empty() || options_.choices.force) return {};
+  return InputError(std::move(objection));
 }
 
 Result<void> Densifier::OpenWriter() {

@@ -248,6 +248,7 @@ double ToleranceFor(const InverseDepths& range, int planes, double shift_per_dep
 Result<DensifyPlan> PlanDensify(const LightField& light_field, const LfImageStore& store,
                                 const DensifyChoices& choices, ThreadPool& pool) {
   DensifyPlan plan;
+  plan.is_film = !choices.frames.empty();
   plan.divisor = choices.divisor;
   plan.subject = AxesMeetingPoint(light_field);
   plan.compare_with = CompareWith(light_field, plan.subject);

@@ -44,6 +44,7 @@ struct DensifyPlan {
   // are no frames. Their poses are checked.
   std::vector<uint32_t> serving;
   InverseDepths range;
+  bool is_film = false;           // true: there are frames
   int divisor = 1;                // DensifyChoices::divisor
   int planes = 0;                 // number of inverse depths that are compared
   double tolerance = 0;           // inverse depths that differ by less count as equal

@@ -175,7 +175,7 @@ LensPlaces FilmLenses::Places(double distance, double outside) const {
     for (auto& [at, place] : lattice) {
       if (!place) continue;
       const Vec3 centre_world = world_from_plane * Vec3(place->place.x(), place->place.y(), 0);
-      // Where sections adjoin, each place belongs to one of them.
+      // Each place belongs to one section, also at the border between two.
       size_t nearest = 0;
       for (size_t f = 1; f < frames_.size(); ++f)
         if ((centres_world_[f] - centre_world).squaredNorm() <

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lf/densify/self_test.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,7 +21,8 @@
 namespace lf {
 namespace {
 
-constexpr int kTestedWidth = 200;
+// Width of the images that are compared. Those of a film may be smaller, because each film is tested.
+constexpr int kTestedWidth = 200, kTestedWidthOfFilm = 160;
 constexpr size_t kMostTests = 8;
 constexpr int kBlendDepths = 12;
 constexpr size_t kLeastAround = 3;  // LF cameras that surround another one
@@ -103,13 +106,18 @@ double AngleDeg(const PinholeCamera& first, const PinholeCamera& second, double 
       std::atan2(to_point.cross(from_second).norm(), to_point.dot(from_second)));
 }
 
+int DivisorFor(int width_px, bool is_film) {
+  return std::max(1, is_film ? (width_px + kTestedWidthOfFilm / 2) / kTestedWidthOfFilm
+                             : width_px / kTestedWidth);
+}
+
 // Tests of one light field.
 class Tester {
  public:
   Tester(const LightField& light_field, const LfImageStore& store, const DensifyPlan& plan)
       : light_field_(light_field),
         plan_(plan),
-        divisor_(std::max(1, light_field.intrinsics.front().width_px / kTestedWidth)),
+        divisor_(DivisorFor(light_field.intrinsics.front().width_px, plan.is_film)),
         curve_(light_field.encoding),
         images_(light_field, store, divisor_, std::numeric_limits<size_t>::max()),
         planes_(PlanesFor(plan.ShiftPx() * plan.divisor / divisor_)),
@@ -231,6 +239,32 @@ double MedianGainDb(const std::vector<LeftOut>& tests) {
   std::vector<double> gains;
   for (const LeftOut& test : tests) gains.push_back(test.GainDb());
   return Median(std::move(gains));
+}
+
+std::string ObjectionOf(const std::vector<LeftOut>& tests, const InverseDepths& range,
+                        bool is_film) {
+  if (tests.empty()) return "";
+  const double gain_db = MedianGainDb(tests), psnr_db = MedianPsnrDb(tests);
+  if (gain_db >= kLeastGainDb) return "";
+  // A mean of neighbours may be as right at one depth, but it cannot blur as a lens does.
+  if (is_film && gain_db >= 0 && psnr_db >= kRightDb) return "";
+  const auto worst =
+      std::min_element(tests.begin(), tests.end(),
+                       [](const LeftOut& a, const LeftOut& b) { return a.GainDb() < b.GainDb(); });
+  const std::string reason =
+      psnr_db >= kNearlyRightDb
+          ? std::string(
+                "The mean is nearly right, because neighbouring LF images differ little: render "
+                "the light field as it is, or try {force}")
+          : fmt::format(
+                "Poses may be wrong, for example where equal patterns were confused, or the depths "
+                "({:.4g} to {:.4g}): check the poses, state {{depths}}, or try {{force}}",
+                1 / range.greatest, range.least > 0 ? 1 / range.least : INFINITY);
+  return fmt::format(
+      "{} LF images were left out in turn and made from their neighbours: at {:.0f} dB, the result "
+      "is only {:.1f} dB better than a mean of the neighbours, expected at least {} dB (worst: {}, "
+      "{:.1f} dB). {}",
+      tests.size(), psnr_db, gain_db, kLeastGainDb, worst->name, worst->GainDb(), reason);
 }
 
 }  // namespace lf

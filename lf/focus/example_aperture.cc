@@ -156,4 +156,35 @@ ExampleAperture ChooseAperture(const LightField& light_field, const PinholeCamer
   return {spacings, reason, "", least};
 }
 
+ExampleAperture ChooseDensifiedAperture(const LightField& light_field, const PinholeCamera& camera,
+                                        const Intrinsics& frame, const ExampleFocus& focus,
+                                        double spacing_w) {
+  constexpr double kBlur = 0.04;  // of the width of the picture
+  constexpr double kPlaces = 0.9, kAssumedNear = 0.75;
+  const ExampleAperture recorded = ChooseAperture(light_field, camera, focus, spacing_w);
+  if (!focus.doubt.empty()) return recorded;
+  const double focus_per_w = 1 / focus.distance_w;
+  std::vector<double> away_per_w;
+  for (const SeenDepths& seen : {focus.places, focus.points})
+    for (const double per_w : seen.per_w) away_per_w.push_back(std::abs(per_w - focus_per_w));
+  double most_per_w = (1 / kAssumedNear - 1) * focus_per_w;
+  if (away_per_w.size() >= kFewestPlaces) {
+    const auto at = away_per_w.begin() +
+                    static_cast<ptrdiff_t>(kPlaces * static_cast<double>(away_per_w.size() - 1));
+    std::nth_element(away_per_w.begin(), at, away_per_w.end());
+    most_per_w = *at;
+  }
+  const double blurred_w = kBlur * frame.width_px / (frame.fx_px * std::max(most_per_w, 1e-9));
+  const double widest_w = kWidestDensified * focus.distance_w;
+  const double diameter_w = std::min({blurred_w, spacing_w, widest_w});
+  if (recorded.spacings * spacing_w >= diameter_w) return recorded;
+  std::string reason =
+      fmt::format("filled with virtual LF images, {:.2g} of the distance between LF cameras",
+                  diameter_w / spacing_w);
+  if (blurred_w <= diameter_w)
+    reason += fmt::format("; what is out of focus is blurred over up to {:.0f} % of the width",
+                          100 * kBlur);
+  return {diameter_w / spacing_w, reason, "", diameter_w / spacing_w};
+}
+
 }  // namespace lf

@@ -48,4 +48,16 @@ inline constexpr double kWidestLens = 0.25;
 ExampleAperture ChooseAperture(const LightField& light_field, const PinholeCamera& camera,
                                const ExampleFocus& focus, double spacing_w);
 
+inline constexpr double kWidestDensified = 0.08;
+
+// Returns the aperture for a focus if virtual LF images will be put into the lens, so that it blurs
+// without copies however far apart the LF cameras are. What is farthest out of focus, but for a
+// tenth of the textured places, is blurred over a 25th of the picture's width. The lens is not
+// wider than the distance between LF cameras, because virtual LF images are right near them, nor
+// than kWidestLens. It is ChooseAperture() if that is wider, or if the focus may be wrong.
+//   frame  of the picture
+ExampleAperture ChooseDensifiedAperture(const LightField& light_field, const PinholeCamera& camera,
+                                        const Intrinsics& frame, const ExampleFocus& focus,
+                                        double spacing_w);
+
 }  // namespace lf

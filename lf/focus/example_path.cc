@@ -141,14 +141,14 @@ void TellSparse(ExampleMove move, double spacing_w, const std::string& copies,
   if (move == ExampleMove::kFocusPull)
     example->move_warning = fmt::format(
         "the focus pull will hardly be visible, because the aperture holds one LF camera, and such "
-        "a picture is sharp everywhere. For blur, put virtual LF images between the recorded ones "
-        "(lfdensify), or set aperture_diameter to {:.3g}, which shows copies{}",
+        "a picture is sharp everywhere. For blur, put virtual LF images into the lens ({{densify}} "
+        "chooses one that they fill), or set aperture_diameter to {:.3g}, which shows copies{}",
         kLeastSpacings * spacing_w, other);
   else if (move != ExampleMove::kStatic)
     example->move_warning = fmt::format(
         "the LF cameras are far apart ({}): where the camera passes between them, the film shows "
-        "the pictures of several. Put virtual LF images between the recorded ones (lfdensify, "
-        "or {{lfrenderer densify}}), or record more",
+        "the pictures of several. Put virtual LF images into the lens ({{densify}} chooses one "
+        "that they fill), or record more",
         copies);
 }
 
@@ -206,8 +206,9 @@ std::string YamlOf(const LightField& light_field, LfImageId id, const Shot& shot
 }
 
 // Returns the lens and the frame of a path at an LF camera.
+//   is_densified  true: virtual LF images will be put into the lens
 Shot ShotOf(const LightField& light_field, LfImageId id, const ExampleFocus& focus,
-            double spacing_w, const ExampleAperture& aperture, ExampleMove move,
+            double spacing_w, const ExampleAperture& aperture, bool is_densified, ExampleMove move,
             ExamplePath* example) {
   Shot shot;
   shot.start = light_field.Camera(id);
@@ -236,7 +237,7 @@ Shot ShotOf(const LightField& light_field, LfImageId id, const ExampleFocus& foc
         "; it holds fewer than {} LF cameras, so that copies may be seen instead of a blur",
         kFewestCameras);
   shot.lens_radius_w = example->aperture_diameter_w / 2;
-  if (StandInARow(light_field, shot.start, shot.lens_radius_w))
+  if (!is_densified && StandInARow(light_field, shot.start, shot.lens_radius_w))
     example->aperture_reason +=
         "; the LF cameras in it stand in a row, so that it blurs in one direction only";
   return shot;
@@ -279,7 +280,7 @@ std::string OtherMove(const LightField& light_field, LfImageId id, const Example
   for (const auto& [move, name] :
        {std::pair(ExampleMove::kDolly, "dolly"), std::pair(ExampleMove::kOrbit, "orbit")}) {
     ExamplePath ignored;
-    const Shot shot = ShotOf(light_field, id, focus, spacing_w, aperture, move, &ignored);
+    const Shot shot = ShotOf(light_field, id, focus, spacing_w, aperture, false, move, &ignored);
     const Result<CameraMove> moved = MoveCamera(light_field, id, shot, move);
     if (moved && moved->warning.empty())
       return fmt::format("; {{move {}}} moves the camera instead", name);
@@ -287,8 +288,10 @@ std::string OtherMove(const LightField& light_field, LfImageId id, const Example
   return "";
 }
 
-Result<ExamplePath> PathOfMove(const LightField& light_field, LfImageId id,
+Result<ExamplePath> PathOfMove(const LightField& light_field, const ExampleOptions& options,
                                const ExampleFocus& focus, double spacing_w, ExampleMove move) {
+  const LfImageId id = options.camera;
+  const PinholeCamera camera = light_field.Camera(id);
   ExamplePath example;
   example.move = move;
   example.focus_distance_w = focus.distance_w;
@@ -296,8 +299,13 @@ Result<ExamplePath> PathOfMove(const LightField& light_field, LfImageId id,
   example.doubt = focus.doubt;
   example.candidates_w = focus.candidates_w;
   const ExampleAperture aperture =
-      ChooseAperture(light_field, light_field.Camera(id), focus, spacing_w);
-  const Shot shot = ShotOf(light_field, id, focus, spacing_w, aperture, move, &example);
+      options.densify
+          ? ChooseDensifiedAperture(light_field, camera,
+                                    InscribedFrame(camera, LevelUpWorld(light_field, camera)),
+                                    focus, spacing_w)
+          : ChooseAperture(light_field, camera, focus, spacing_w);
+  const Shot shot =
+      ShotOf(light_field, id, focus, spacing_w, aperture, options.densify, move, &example);
   Intrinsics frame = shot.frame;
   Movement movement;
   if (MovesCamera(move)) {
@@ -309,14 +317,14 @@ Result<ExamplePath> PathOfMove(const LightField& light_field, LfImageId id,
   } else {
     movement = StandingMovement(move, shot, focus, &example);
   }
-  if (aperture.spacings < kLeastSpacings && focus.doubt.empty())
+  const bool is_sparse = !options.densify && aperture.spacings < kLeastSpacings;
+  if (is_sparse && focus.doubt.empty())
     TellSparse(move, spacing_w, aperture.copies,
                move == ExampleMove::kFocusPull
                    ? OtherMove(light_field, id, focus, spacing_w, aperture)
                    : "",
                &example);
-  else if (aperture.spacings < kLeastSpacings && MovesCamera(move) &&
-           spacing_w > kFarApart_rad * focus.distance_w)
+  else if (is_sparse && MovesCamera(move) && spacing_w > kFarApart_rad * focus.distance_w)
     TellSparse(move, spacing_w,
                fmt::format("neighbours by {:.2g} degrees as seen from the subject",
                            DegreesFromRadians(spacing_w / focus.distance_w)),
@@ -401,15 +409,15 @@ Result<ExamplePath> MakeExamplePath(const LightField& light_field, const LfImage
   LF_ASSIGN_OR_RETURN(const ExampleFocus focus,
                       ChooseFocus(light_field, store, options, spacing_w, pool));
   if (options.move != ExampleMove::kAuto)
-    return PathOfMove(light_field, options.camera, focus, spacing_w, options.move);
+    return PathOfMove(light_field, options, focus, spacing_w, options.move);
   const Result<RecordedTrack> track = FindTrack(light_field, options.camera);
   if (track && focus.doubt.empty() && IsDenseTrack(light_field, *track, focus.distance_w)) {
     Result<ExamplePath> along =
-        PathOfMove(light_field, options.camera, focus, spacing_w, ExampleMove::kAlong);
+        PathOfMove(light_field, options, focus, spacing_w, ExampleMove::kAlong);
     if (along) return along;
     LogInfo("{}; the focus moves instead", along.error().message);
   }
-  return PathOfMove(light_field, options.camera, focus, spacing_w, ExampleMove::kFocusPull);
+  return PathOfMove(light_field, options, focus, spacing_w, ExampleMove::kFocusPull);
 }
 
 }  // namespace lf

@@ -33,6 +33,7 @@ struct ExampleOptions {
   LfImageId camera;  // LF image whose LF camera the path starts at, passes or moves around
   ExampleMove move = ExampleMove::kAuto;
   std::optional<double> focus_distance_w;  // unset: MakeExamplePath() finds it
+  bool densify = false;  // true: virtual LF images will be put into the lens (lf/densify)
   // Returns points of the scene that the LF image shows, in world coordinates. May be left empty if
   // the light field has no points. Called only if focus_distance_w is unset.
   std::function<Result<std::vector<Vec3>>()> points_world = {};
@@ -79,6 +80,8 @@ Result<LfImageId> FirstCamera(const LightField& light_field, const LfImageStore&
 //   focus distance, and holds six LF cameras or more. If that is impossible, if the ghosts are more
 //   than 16 pixels apart, or if the focus is not sure, the lens is almost a pinhole, and the first
 //   frame is the view of one LF camera.
+//   If virtual LF images will be put into it, it is as wide as a picture with a clear blur needs
+//   (ChooseDensifiedAperture()), also in captures whose LF cameras are far apart.
 // - Focus pull: through the depths found in the scene, from at least 0.7 to at most 1.6 times the
 //   focus distance.
 // - A moving camera: the lens is at most half as wide as the LF cameras reach, so that the rest is

@@ -111,8 +111,8 @@ def test_lenses_without_an_order_are_refused(field, path):
         lf.through(field, path[0].replace(position=(5, 0, -1)))
 
 
-# A frame of so many parts that it takes much longer than a second. Each thread has sums of its own, so that the memory is
-# for two threads, on any machine.
+# A frame of so many parts that it takes much longer than a second. Each thread has sums of its own, so that the memory
+# is for two threads, on any machine.
 INTERRUPTED = """
 import os, signal, sys, threading
 import lfrendertools as lf
