@@ -99,6 +99,7 @@ class Densifier {
   Result<void> LeaveOutBroken();
   Result<void> CheckPoses();
   Result<void> Test();
+  Result<void> TestBeyond();
   Result<void> OpenWriter();
   Result<void> SweepAll();
   Result<void> Sweep(uint32_t id);
@@ -263,15 +264,30 @@ Result<void> Densifier::CheckPoses() {
 
 Result<void> Densifier::Test() {
   LF_ASSIGN_OR_RETURN(report_.tests, TestByLeavingOut(light_field_, *store_, plan_, pool_));
-  if (report_.tests.empty()) {
+  const std::vector<LeftOut> inside = TestsOf(report_.tests, false);
+  if (inside.empty())
     LogWarning(
         "no LF camera is surrounded by others, so that virtual LF images cannot be tested against "
         "recorded ones");
-    return {};
-  }
-  std::string objection = ObjectionOf(report_.tests, plan_.range, !options_.choices.frames.empty());
+  std::string objection = ObjectionOf(inside, plan_.range, plan_.is_film);
+  if (!objection.empty() && !options_.choices.force) return InputError(std::move(objection));
+  return TestBeyond();
+}
+
+// Leaves out virtual LF images beyond the LF cameras unless they are right.
+Result<void> Densifier::TestBeyond() {
+  const std::vector<LeftOut> beyond = TestsOf(report_.tests, true);
+  std::string objection = ObjectionOf(beyond, plan_.range, plan_.is_film);
   if (objection.empty() || options_.choices.force) return {};
-  return InputError(std::move(objection));
+  DropBeyond(&plan_);
+  if (plan_.virtual_cameras.empty()) return InputError(std::move(objection));
+  LogWarning(
+      "virtual LF images are made between the LF cameras only, and fill less of the lens, because "
+      "beyond them they would not be right: made of neighbours on one side, LF images are {:.1f} "
+      "dB "
+      "better than a mean of these, at {:.0f} dB",
+      MedianGainDb(beyond), MedianPsnrDb(beyond));
+  return {};
 }
 
 Result<void> Densifier::OpenWriter() {
@@ -443,6 +459,7 @@ Result<DensifyReport> Densifier::Run() {
   LogDebug("{}: {}", options_.store.string(), SettingsInWords(plan_, options_.choices));
   LF_RETURN_IF_ERROR(CheckPoses());
   LF_RETURN_IF_ERROR(Test());
+  report_.virtual_count = plan_.virtual_cameras.size();
 
   LF_RETURN_IF_ERROR(OpenWriter());
   if (report_.was_there) return std::move(report_);

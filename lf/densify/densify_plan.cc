@@ -234,7 +234,26 @@ std::set<uint32_t> WithCompared(const std::set<uint32_t>& ids, const DensifyPlan
   return result;
 }
 
+// Finds the LF images that the virtual ones need.
+void FindSources(DensifyPlan* plan) {
+  std::set<uint32_t> sources;
+  for (const VirtualCamera& camera : plan->virtual_cameras)
+    for (const WeightedPoint& source : camera.sources) sources.insert(source.index);
+  plan->sources.assign(sources.begin(), sources.end());
+  // Depths are compared with those of neighbours twice. A film's second comparison does with the
+  // neighbours that were compared once.
+  std::set<uint32_t> swept = WithCompared(sources, *plan);
+  if (!plan->is_film) swept = WithCompared(swept, *plan);
+  plan->swept.assign(swept.begin(), swept.end());
+}
+
 }  // namespace
+
+void DropBeyond(DensifyPlan* plan) {
+  std::erase_if(plan->virtual_cameras,
+                [](const VirtualCamera& camera) { return camera.is_beyond; });
+  FindSources(plan);
+}
 
 int PlanesFor(double shift_px) {
   return std::clamp(static_cast<int>(shift_px / kPlaneStep_px) + 2, kLeastPlanes, kMostPlanes);
@@ -270,15 +289,7 @@ Result<DensifyPlan> PlanDensify(const LightField& light_field, const LfImageStor
   plan.planes = PlanesFor(plan.ShiftPx());
   plan.tolerance = ToleranceFor(plan.range, plan.planes, plan.shift_per_depth_px);
   LF_RETURN_IF_ERROR(ChooseVirtual(light_field, choices, lenses ? &*lenses : nullptr, pool, &plan));
-  std::set<uint32_t> sources;
-  for (const VirtualCamera& camera : plan.virtual_cameras)
-    for (const WeightedPoint& source : camera.sources) sources.insert(source.index);
-  plan.sources.assign(sources.begin(), sources.end());
-  // Depths are compared with those of neighbours twice. A film's second comparison does with the
-  // neighbours that were compared once.
-  std::set<uint32_t> swept = WithCompared(sources, plan);
-  if (!lenses) swept = WithCompared(swept, plan);
-  plan.swept.assign(swept.begin(), swept.end());
+  FindSources(&plan);
   return plan;
 }
 

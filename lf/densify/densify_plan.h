@@ -81,4 +81,7 @@ double ToleranceFor(const InverseDepths& range, int planes, double shift_per_dep
 Result<DensifyPlan> PlanDensify(const LightField& light_field, const LfImageStore& store,
                                 const DensifyChoices& choices, ThreadPool& pool);
 
+// Leaves out the virtual LF cameras beyond the hull of the recorded ones.
+void DropBeyond(DensifyPlan* plan);
+
 }  // namespace lf

@@ -42,13 +42,14 @@ std::string DensifyText(const DensifyReport& report, const DensifyOptions& optio
       "the\n"
       "          virtual pixels rest on few\n",
       100 * report.agreeing_share, 100 * report.weak_share);
-  if (!report.tests.empty()) {
+  for (const bool is_beyond : {false, true}) {
+    const std::vector<LeftOut> tests = TestsOf(report.tests, is_beyond);
+    if (tests.empty()) continue;
     text += fmt::format(
-        "test      LF images left out and made from their neighbours: {:.1f} dB better than a "
-        "mean\n"
+        "test      LF images left out and made from {}: {:.1f} dB better than a mean\n"
         "          of these\n",
-        MedianGainDb(report.tests));
-    for (const LeftOut& test : report.tests)
+        is_beyond ? "those on one side" : "their neighbours", MedianGainDb(tests));
+    for (const LeftOut& test : tests)
       text += fmt::format("          {:.1f} dB (mean: {:.1f} dB) at {:.1f} degrees  {}\n",
                           test.virtual_psnr_db, test.blend_psnr_db, test.angle_deg, test.name);
   }
@@ -66,7 +67,8 @@ std::string DensifyJson(const DensifyReport& report, const DensifyOptions& optio
     tests.push_back({{"lf_image", test.name},
                      {"virtual_psnr_db", test.virtual_psnr_db},
                      {"mean_psnr_db", test.blend_psnr_db},
-                     {"angle_deg", test.angle_deg}});
+                     {"angle_deg", test.angle_deg},
+                     {"beyond", test.is_beyond}});
   nlohmann::ordered_json skipped = nlohmann::ordered_json::array();
   for (const DensifyReport::Skipped& image : report.skipped)
     skipped.push_back({{"lf_image", image.name}, {"reason", Spelled(image.reason)}});

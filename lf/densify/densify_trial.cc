@@ -16,7 +16,7 @@ Result<DensifyTrial> TryDensify(const LightField& light_field, const LfImageStor
   trial.objection = plan.dense;
   if (!trial.objection.empty()) return trial;
   LF_ASSIGN_OR_RETURN(trial.tests, TestByLeavingOut(light_field, store, plan, pool));
-  trial.objection = ObjectionOf(trial.tests, plan.range, true);
+  trial.objection = ObjectionOf(TestsOf(trial.tests, false), plan.range, true);
   return trial;
 }
 

@@ -192,8 +192,10 @@ LensPlaces FilmLenses::Places(double distance, double outside) const {
 }
 
 VirtualCamera FilmLenses::CameraAt(const LensPlace& place, double distance, int divisor) const {
-  constexpr double kBeside = 2;  // lattice distances beside a lens that use a place
+  constexpr double kBeside = 2;     // lattice distances beside a lens that use a place
+  constexpr double kInside = 1e-6;  // of the distance: rounding
   VirtualCamera result;
+  result.is_beyond = place.Beyond() > kInside * distance;
   result.sources = place.at.neighbours;
   AddNearest(charts_[place.section].points, place.at.place, &result.sources);
   double f_px = 0;

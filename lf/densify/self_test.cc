@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <mutex>
 #include <optional>
@@ -21,10 +22,12 @@
 namespace lf {
 namespace {
 
-// Width of the images that are compared. Those of a film may be smaller, because each film is tested.
+// Width of the images that are compared. Those of a film may be smaller, because each film is
+// tested.
 constexpr int kTestedWidth = 200, kTestedWidthOfFilm = 160;
 constexpr size_t kMostTests = 8;
 constexpr int kBlendDepths = 12;
+constexpr size_t kLeastSources = 2;
 constexpr size_t kLeastAround = 3;  // LF cameras that surround another one
 
 // Returns the tones of light, smoothed by two means over 3 x 3 pixels. NaN where there is no light.
@@ -68,7 +71,8 @@ double PsnrDb(const Image<float>& a, const Image<float>& b) {
 // this one among them. Empty: there are no others.
 struct Others {
   std::vector<uint32_t> ids;
-  std::vector<Vec2> points;  // [ids]
+  std::vector<Vec2> points;         // [ids]
+  std::vector<uint32_t> forbidden;  // the left-out LF camera and those of its side; ascending
   LatticePlace at;
 
   // True if other LF cameras are on all sides.
@@ -82,18 +86,45 @@ struct Others {
     return (at.inside - at.place).norm() <= kMostBeside * nearest;
   }
 };
-Others OthersAround(const LightField& light_field, const DensifyPlan& plan, uint32_t left_out) {
+//   one_side  true: the side of the nearest one is left out, so that the rest does not surround it
+Others OthersAround(const LightField& light_field, const DensifyPlan& plan, uint32_t left_out,
+                    bool one_side) {
   const PinholeCamera camera = light_field.Camera(LfImageId{left_out});
   const CameraChart chart =
       ChartAround(light_field, camera, InverseDistanceOf(camera, plan.subject));
+  Vec2 towards = Vec2::Zero();
+  for (size_t i = 0; i < chart.ids.size() && one_side; ++i)
+    if (chart.ids[i] != left_out &&
+        (towards == Vec2::Zero() || chart.points[i].norm() < towards.norm()))
+      towards = chart.points[i];
+  constexpr double kBeside = 0.1;  // a point straight beside the left-out one is on neither side
   Others others;
   for (size_t i = 0; i < chart.ids.size(); ++i) {
-    if (chart.ids[i] == left_out) continue;
+    if (chart.ids[i] == left_out ||
+        (one_side && chart.points[i].dot(towards) > -kBeside * towards.squaredNorm())) {
+      others.forbidden.push_back(chart.ids[i]);
+      continue;
+    }
     others.ids.push_back(chart.ids[i]);
     others.points.push_back(chart.points[i]);
   }
   if (!others.ids.empty()) others.at = PlaceAmong(others.points, Vec2::Zero());
   return others;
+}
+
+// Returns the sources of a virtual LF image at the place of the left-out one: numbers of
+// Others::ids. Their depths can be found without LF images that are forbidden.
+std::vector<WeightedPoint> SourcesOf(const Others& others, const DensifyPlan& plan) {
+  std::vector<WeightedPoint> sources = others.at.neighbours;
+  if (sources.size() < kLeastAround) AddNearest(others.points, Vec2::Zero(), &sources);
+  std::erase_if(sources, [&](const WeightedPoint& source) {
+    const std::vector<uint32_t>& compared = plan.compare_with[others.ids[source.index]];
+    return std::all_of(compared.begin(), compared.end(), [&](uint32_t id) {
+      return std::binary_search(others.forbidden.begin(), others.forbidden.end(), id);
+    });
+  });
+  if (sources.size() > kMostSources) sources.resize(kMostSources);
+  return sources;
 }
 
 // Returns the angle at which two cameras see the point at inverse depth z on the axis of the first.
@@ -124,8 +155,8 @@ class Tester {
         tolerance_(
             ToleranceFor(plan.range, planes_, plan.shift_per_depth_px * plan.divisor / divisor_)) {}
 
-  // Tests an LF image that others surround.
-  Result<LeftOut> Test(uint32_t left_out);
+  // Tests an LF image that has others around it, or on one side of it that is not left out.
+  Result<LeftOut> Test(uint32_t left_out, bool one_side);
 
  private:
   // Working images and their depths.
@@ -133,7 +164,8 @@ class Tester {
     std::vector<std::shared_ptr<const WorkingImage>> images;
     std::vector<DepthPlane> planes;
   };
-  Result<Group> SweepWithout(uint32_t left_out, std::span<const uint32_t> wanted);
+  // Sweeps some LF images. Each must have one that it is compared with and that is not forbidden.
+  Result<Group> Sweep(std::span<const uint32_t> wanted, std::span<const uint32_t> forbidden);
 
   const LightField& light_field_;
   const DensifyPlan& plan_;
@@ -144,14 +176,15 @@ class Tester {
   const double tolerance_;
 };
 
-Result<Tester::Group> Tester::SweepWithout(uint32_t left_out, std::span<const uint32_t> wanted) {
+Result<Tester::Group> Tester::Sweep(std::span<const uint32_t> wanted,
+                                    std::span<const uint32_t> forbidden) {
   Group group;
   for (const uint32_t id : wanted) {
     LF_ASSIGN_OR_RETURN(auto reference, images_.Get(LfImageId{id}));
     std::vector<std::shared_ptr<const WorkingImage>> others;
     std::vector<SweepView> views;
     for (const uint32_t other : plan_.compare_with[id]) {
-      if (other == left_out) continue;
+      if (std::binary_search(forbidden.begin(), forbidden.end(), other)) continue;
       LF_ASSIGN_OR_RETURN(auto image, images_.Get(LfImageId{other}));
       views.push_back(ViewFrom(*reference, *image));
       others.push_back(std::move(image));
@@ -162,18 +195,16 @@ Result<Tester::Group> Tester::SweepWithout(uint32_t left_out, std::span<const ui
   return group;
 }
 
-Result<LeftOut> Tester::Test(uint32_t left_out) {
-  const Others others = OthersAround(light_field_, plan_, left_out);
-  std::vector<WeightedPoint> neighbours = others.at.neighbours;
-  if (neighbours.size() < kLeastAround) AddNearest(others.points, Vec2::Zero(), &neighbours);
-  if (neighbours.size() > kMostSources) neighbours.resize(kMostSources);
+Result<LeftOut> Tester::Test(uint32_t left_out, bool one_side) {
+  const Others others = OthersAround(light_field_, plan_, left_out, one_side);
+  const std::vector<WeightedPoint> neighbours = SourcesOf(others, plan_);
   std::vector<uint32_t> ids;
   double sum = 0;
   for (const WeightedPoint& neighbour : neighbours) {
     ids.push_back(others.ids[neighbour.index]);
     sum += neighbour.weight;
   }
-  LF_ASSIGN_OR_RETURN(Group group, SweepWithout(left_out, ids));
+  LF_ASSIGN_OR_RETURN(Group group, Sweep(ids, others.forbidden));
   LF_ASSIGN_OR_RETURN(const auto recorded, images_.Get(LfImageId{left_out}));
   const auto made_with = [&](const std::vector<DepthPlane>& planes) {
     std::vector<Source> sources;
@@ -184,6 +215,7 @@ Result<LeftOut> Tester::Test(uint32_t left_out) {
   };
   const Image<float> truth = SmoothTones(recorded->light, curve_);
   LeftOut result{light_field_.image_names[left_out]};
+  result.is_beyond = one_side;
   const double middle = (plan_.range.least + plan_.range.greatest) / 2;
   for (size_t i = 0; i < ids.size(); ++i)
     result.angle_deg +=
@@ -204,21 +236,33 @@ Result<LeftOut> Tester::Test(uint32_t left_out) {
 Result<std::vector<LeftOut>> TestByLeavingOut(const LightField& light_field,
                                               const LfImageStore& store, const DensifyPlan& plan,
                                               ThreadPool& pool) {
-  std::vector<uint32_t> inner, between;
+  std::vector<uint32_t> inner, between, beside;
+  const bool is_widened = std::any_of(plan.virtual_cameras.begin(), plan.virtual_cameras.end(),
+                                      [](const VirtualCamera& camera) { return camera.is_beyond; });
   for (const uint32_t id : plan.sources) {
-    const Others others = OthersAround(light_field, plan, id);
-    if (others.Surround()) inner.push_back(id);
-    if (others.HaveBetween()) between.push_back(id);
+    const Others others = OthersAround(light_field, plan, id, false);
+    const bool has_sources = SourcesOf(others, plan).size() >= kLeastSources;
+    if (others.Surround() && has_sources) inner.push_back(id);
+    if (others.HaveBetween() && has_sources) between.push_back(id);
+    if (is_widened &&
+        SourcesOf(OthersAround(light_field, plan, id, true), plan).size() >= kLeastSources)
+      beside.push_back(id);
   }
   if (inner.size() < kMostTests / 2) inner = std::move(between);
-  const size_t count = std::min(kMostTests, inner.size());
+  const size_t inside_count = std::min(kMostTests, inner.size());
+  const size_t count = inside_count + std::min(kMostTests / 2, beside.size());
   std::vector<LeftOut> tests(count);
   Tester tester(light_field, store, plan);
   std::mutex mutex;
   std::optional<Error> error;
+  // Returns number i of `some` that are spread over all.
+  const auto spread = [](const std::vector<uint32_t>& all, size_t i, size_t some) {
+    return all[some == 1 ? all.size() / 2 : i * (all.size() - 1) / (some - 1)];
+  };
   pool.ForEach(count, [&](size_t i) {
-    const size_t chosen = count == 1 ? inner.size() / 2 : i * (inner.size() - 1) / (count - 1);
-    auto result = tester.Test(inner[chosen]);
+    auto result = i < inside_count
+                      ? tester.Test(spread(inner, i, inside_count), false)
+                      : tester.Test(spread(beside, i - inside_count, count - inside_count), true);
     const std::lock_guard lock(mutex);
     if (result)
       tests[i] = *result;
@@ -227,6 +271,13 @@ Result<std::vector<LeftOut>> TestByLeavingOut(const LightField& light_field,
   });
   if (error) return *error;
   return tests;
+}
+
+std::vector<LeftOut> TestsOf(const std::vector<LeftOut>& tests, bool is_beyond) {
+  std::vector<LeftOut> result;
+  std::copy_if(tests.begin(), tests.end(), std::back_inserter(result),
+               [&](const LeftOut& test) { return test.is_beyond == is_beyond; });
+  return result;
 }
 
 double MedianPsnrDb(const std::vector<LeftOut>& tests) {

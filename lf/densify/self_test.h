@@ -22,6 +22,9 @@ struct LeftOut {
   double blend_psnr_db = 0;
   // Angle between its ray to the middle of the scene and theirs, weighted as their colours are.
   double angle_deg = 0;
+  // True: it was made of LF images on one side of it, so that it tells how right virtual LF images
+  // beyond the recorded ones are.
+  bool is_beyond = false;
   double GainDb() const { return virtual_psnr_db - blend_psnr_db; }
 };
 
@@ -42,10 +45,15 @@ inline constexpr double kNearlyRightDb = 36;
 // 200 pixels and smoothed. The distances between LF cameras are therefore larger than they will be.
 // LF images on the hull of the LF cameras are not tested, because none surround them. If fewer than
 // four are inside it, as in a row, those between two others are tested. Empty if there are none.
+// If virtual LF cameras stand beyond the recorded ones, up to four LF images are also made of those
+// on one side of them.
 // Errors of LoadWorkingImage().
 Result<std::vector<LeftOut>> TestByLeavingOut(const LightField& light_field,
                                               const LfImageStore& store, const DensifyPlan& plan,
                                               ThreadPool& pool);
+
+// Returns the tests of one kind.
+std::vector<LeftOut> TestsOf(const std::vector<LeftOut>& tests, bool is_beyond);
 
 double MedianPsnrDb(const std::vector<LeftOut>& tests);
 double MedianGainDb(const std::vector<LeftOut>& tests);

@@ -17,6 +17,7 @@ namespace lf {
 struct VirtualCamera {
   PinholeCamera camera;                // without distortion
   std::vector<WeightedPoint> sources;  // LF images with their weights
+  bool is_beyond = false;              // true: it fills a lens beyond the hull of the LF cameras
 };
 
 // Adds the nearest points that are no sources yet, until there are six or no more, and makes all
