@@ -27,9 +27,9 @@
 namespace lf {
 namespace {
 
-// Is changed whenever the same light field and options give other virtual LF images, so that an
-// unfinished store of an older program is not resumed.
-constexpr int kDensifyVersion = 4;
+// Is changed whenever the same light field and options give other virtual LF images or trust, so
+// that an unfinished store of an older program is not resumed.
+constexpr int kDensifyVersion = 5;
 
 std::string SettingsInWords(const DensifyPlan& plan, const DensifyChoices& choices) {
   return fmt::format(
@@ -432,6 +432,9 @@ Result<void> Densifier::AddVirtual(const RecordedValues& values, size_t i) {
     report_.made_pixels += pixels;
     report_.weak_share += image.weak_share * pixels;
   }
+  // The trust is first, so that no virtual LF image lacks it, wherever the program is interrupted.
+  if (!writer_->HasPlane(id, PlaneKind::kTrust))
+    LF_RETURN_IF_ERROR(writer_->AddTrust(id, image.trust));
   CodecSettings settings;
   settings.profile = CodecProfile::kLossless;
   return writer_->Add(id, CodeOf(values.Of(image.light, all_.cameras[id.value].gain), settings));

@@ -10,6 +10,7 @@
 #include "lf/core/check.h"
 #include "lf/densify/bicubic.h"
 #include "lf/densify/pair_map.h"
+#include "lf/densify/trust.h"
 
 namespace lf {
 namespace {
@@ -124,14 +125,15 @@ class Synthesizer {
 
   VirtualImage Run() const {
     constexpr float kWeak = 0.4f;
-    VirtualImage image{Image<uint16_t>(width_, height_, LfPixels::kRgbLanes), 0};
+    VirtualImage image{Image<uint16_t>(width_, height_, LfPixels::kRgbLanes),
+                       Image<uint8_t>(width_, height_), 0};
     size_t weak = 0;
     std::array<Candidate, kMostSources> elected;
     for (int y = 0; y < height_; ++y)
       for (int x = 0; x < width_; ++x) {
         const size_t count = Vote(x, y, &elected);
         if (elected[0].votes < kWeak) ++weak;
-        Mix(x, y, {elected.data(), count}, &image.light.at(x, y));
+        image.trust.at(x, y) = Mix(x, y, {elected.data(), count}, &image.light.at(x, y));
       }
     image.weak_share = static_cast<double>(weak) / (static_cast<double>(width_) * height_);
     return image;
@@ -213,29 +215,35 @@ class Synthesizer {
     return count;
   }
 
-  // Writes the colour of a pixel; leaves it 0 if no source shows it.
-  void Mix(int x, int y, std::span<const Candidate> elected, uint16_t* pixel) const {
+  // Writes the colour of a pixel; leaves it 0 if no source shows it. Returns the trust in it.
+  uint8_t Mix(int x, int y, std::span<const Candidate> elected, uint16_t* pixel) const {
     constexpr float kClose = 0.6f;  // candidates with so many fewer votes have no part
-    float colour[kColours] = {}, sum = 0;
+    float colour[kColours] = {}, sum = 0, spread = 0;
     for (const Candidate& candidate : elected) {
       const float rest = 1 - (elected[0].votes - candidate.votes) / kClose;
       if (!(rest > 0)) continue;
       const float share = rest * rest * rest;
       float at_depth[kColours];
-      if (!ColourAt(x, y, candidate.depth, at_depth)) continue;
+      float* const wants_spread = &candidate == elected.data() ? &spread : nullptr;
+      if (!ColourAt(x, y, candidate.depth, at_depth, wants_spread)) continue;
       for (int c = 0; c < kColours; ++c) colour[c] += share * at_depth[c];
       sum += share;
     }
-    if (!(sum > 0)) return;
+    if (!(sum > 0)) return 0;
     for (int c = 0; c < kColours; ++c) pixel[c] = RoundToLight(colour[c] / sum);
     pixel[kColours] = 1;
+    return TrustOf(elected[0].votes, spread);
   }
 
   // Computes the colour of a pixel if it has this depth. False if no source shows it.
-  bool ColourAt(int x, int y, float depth, float result[kColours]) const {
+  //   spread  receives the spread of the colours of the sources that agree on the depth; may be
+  //   null
+  bool ColourAt(int x, int y, float depth, float result[kColours], float* spread) const {
     // The more sources agree on the depth, the less the others count.
     constexpr float kFewVotes = 0.02f;
     float agreed[kColours] = {}, agreed_sum = 0, all[kColours] = {}, all_sum = 0;
+    std::array<WeighedColour, kMostSources> colours;
+    size_t colour_count = 0;
     for (const SourceView& view : views_) {
       const SourceView::Seen seen = view.See(static_cast<float>(x) + 0.5f,
                                              static_cast<float>(y) + 0.5f, depth, per_tolerance_);
@@ -246,10 +254,12 @@ class Synthesizer {
         agreed[c] += weight * colour[c];
         all[c] += view.weight() * colour[c];
       }
+      colours[colour_count++] = {{colour[0], colour[1], colour[2]}, weight};
       agreed_sum += weight;
       all_sum += view.weight();
     }
     if (!(all_sum > 0)) return false;
+    if (spread != nullptr) *spread = SpreadOf({colours.data(), colour_count});
     const float trust = agreed_sum / (agreed_sum + kFewVotes);
     for (int c = 0; c < kColours; ++c)
       result[c] =

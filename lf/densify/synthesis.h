@@ -23,6 +23,7 @@ struct Source {
 struct VirtualImage {
   Image<uint16_t> light;  // [height][width][4]: 16-bit radiance R, G, B and 1; 0 if no source shows
                           // the pixel
+  Image<uint8_t> trust;  // [height][width]: trust in the pixel (TrustOf()); 0 if no source shows it
   // Share of the pixels on whose depth sources with less than 2/5 of the weight agree.
   double weak_share = 0;
 };

@@ -71,6 +71,33 @@ TEST(Synthesis, ShowsBothSidesOfAnOutline) {
   EXPECT_GT(PsnrInside(image.light, ImageOfWalls(camera, walls).light, 10), 33);
 }
 
+// Returns the mean trust in the pixels at least `border` away from the border.
+double MeanTrust(const VirtualImage& image, int border) {
+  double sum = 0;
+  int count = 0;
+  for (int y = border; y < image.trust.height() - border; ++y)
+    for (int x = border; x < image.trust.width() - border; ++x, ++count)
+      sum += image.trust.at(x, y) / 255.0;
+  return sum / count;
+}
+
+TEST(Synthesis, TrustsPixelsOnWhoseDepthAndColourSourcesAgree) {
+  const std::vector<Wall> walls = {{2.3, INFINITY, 1}};
+  const PinholeCamera camera = CameraAt(0.013, -0.021);
+  const FourSources right(walls);
+  EXPECT_GT(MeanTrust(Synthesize(camera, right.sources, kScene, kTolerance), 8), 0.8);
+  // Two of the sources have another depth.
+  FourSources split(walls);
+  for (size_t i = 0; i < 2; ++i)
+    split.planes[i] = FourSources::TrueDepths(split.images[i].camera, {{1.2, INFINITY, 1}});
+  EXPECT_LT(MeanTrust(Synthesize(camera, split.sources, kScene, kTolerance), 8), 0.5);
+  // All have the same depth, but two show another picture there.
+  FourSources other(walls);
+  for (size_t i = 0; i < 2; ++i)
+    other.images[i] = ImageOfWalls(other.images[i].camera, {{2.3, INFINITY, 2}});
+  EXPECT_LT(MeanTrust(Synthesize(camera, other.sources, kScene, kTolerance), 8), 0.5);
+}
+
 TEST(Synthesis, AVirtualCameraAtARecordedOneShowsItsImage) {
   const std::vector<Wall> walls = {{1.5, 0.1, 1}, {6, INFINITY, 2}};
   const FourSources four(walls);

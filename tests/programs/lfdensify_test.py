@@ -125,9 +125,11 @@ class DensifyTest(ProgramTestCase):
         self.assertLessEqual(report["virtual"], 60)
         with sqlite3.connect(f"file:{self.store}?immutable=1", uri=True) as database:
             marked = [row[0] for row in database.execute("select id from virtual_images order by id")]
-            planes = database.execute("select distinct kind from planes").fetchall()
+            planes = database.execute("select distinct kind from planes order by kind").fetchall()
+            trusted = [row[0] for row in database.execute("select id from planes where kind = 'trust' order by id")]
         self.assertEqual(marked, list(range(16, 16 + report["virtual"])))
-        self.assertEqual(planes, [("disparity",)])
+        self.assertEqual(planes, [("disparity",), ("trust",)])
+        self.assertEqual(trusted, marked)
         loss = self.folder / "whole.lfs"
         self.succeeds(COMPRESSOR, self.field, "-o", loss, "--profile", "lossless")
         recorded = {row[0]: row[1:] for row in contents(self.store)[0]}

@@ -33,7 +33,7 @@ struct LfPixels {
   }
 
   // Makes this object hold another part of an LF image, in the same memory, without a mask,
-  // opacities and depths. All lanes of `radiance` are unspecified until they are written.
+  // opacities, depths and trust. All lanes of `radiance` are unspecified until they are written.
   void Reset(const PixelRect& part, BayerPattern pattern) {
     radiance.Resize(part.width(), part.height(), pattern == BayerPattern::kNone ? kRgbLanes : 1);
     bayer = pattern;
@@ -43,6 +43,7 @@ struct LfPixels {
     rect = part;
     opacity.Resize(0, 0, kRgbLanes);
     depths = {};
+    trust.Resize(0, 0, 1);
   }
 
   bool IsMasked(int column, int row) const {
@@ -82,6 +83,12 @@ struct LfPixels {
   // Depths of the whole LF image if the store was opened for them (StoreContent), otherwise empty.
   LfDepths depths;
 
+  // Trust in the pixels of a virtual LF image, [height][width][1] with the shape of `radiance`:
+  // from 0 (a guess) to kTrusted (as good as recorded). Empty: all pixels are trusted, as those of
+  // recorded LF images are. Loaded like depths.
+  static constexpr uint8_t kTrusted = 255;
+  Image<uint8_t> trust;
+
   // Moves the opacities into pixels that kernels can collect. The result is empty if there are no
   // opacities.
   LfPixels TakeOpacity() {
@@ -95,7 +102,8 @@ struct LfPixels {
   }
 
   size_t size_bytes() const {
-    return radiance.size_bytes() + mosaic_mask.size_bytes() + opacity.size_bytes();
+    return radiance.size_bytes() + mosaic_mask.size_bytes() + opacity.size_bytes() +
+           trust.size_bytes();
   }
 };
 

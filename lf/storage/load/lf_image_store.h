@@ -20,8 +20,8 @@ namespace lf {
 // How mosaics are loaded: as recorded, or converted to RGB.
 enum class Mosaics { kAsRecorded, kToRgb };
 
-// The content that is loaded of recorded LF images: their pixels, or also their depths
-// (LfPixels::depths) if the store has some.
+// The content that is loaded of LF images: their pixels, or also the depths of recorded ones and
+// the trust in virtual ones (LfPixels::depths and trust) if the store has some.
 enum class StoreContent { kPixels, kPixelsAndDepths };
 
 // A function that a store calls, in the loading thread, when the first `row_count` rows of
@@ -70,8 +70,8 @@ class LfImageStore {
   // Returns false if some of the pixels `rect`, clipped to the image, were left out on purpose.
   virtual bool Keeps(LfImageId /*id*/, const PixelRect& /*rect*/) const { return true; }
 
-  // Returns true if Load() loads the depths of recorded LF images: the store is densified, and was
-  // opened for depths.
+  // Returns true if Load() loads the depths of recorded LF images and the trust in virtual ones:
+  // the store is densified, and was opened for depths.
   virtual bool LoadsDepths() const { return false; }
 
   // Returns the number of bytes that loading reads: the size of the file, or of the encoded image

@@ -147,20 +147,38 @@ Result<void> PackedStore::Load(LfImageId id, const PixelRect& rect, LfPixels* pi
         return LoadRecorded(loading.get(), id, recorded, into);
       },
       &loading->mosaic, pixels);
-  if (loaded && densified_ && !light_field_.cameras[id.value].is_virtual)
-    loaded = LoadDepths(loading.get(), id, &pixels->depths);
+  if (loaded && densified_)
+    loaded = light_field_.cameras[id.value].is_virtual
+                 ? LoadTrust(loading.get(), id, pixels)
+                 : LoadDepths(loading.get(), id, &pixels->depths);
   GiveBack(std::move(loading));
   return loaded;
 }
 
-Result<void> PackedStore::LoadDepths(Loading* loading, LfImageId id, LfDepths* depths) const {
+Result<PackedPlaneReader*> PackedStore::PlanesOf(Loading* loading) const {
   if (!loading->planes) {
     LF_ASSIGN_OR_RETURN(loading->planes, PackedPlaneReader::Open(light_field_.folder));
   }
+  return &*loading->planes;
+}
+
+// Loads the trust in pixels that are loaded.
+Result<void> PackedStore::LoadTrust(Loading* loading, LfImageId id, LfPixels* pixels) const {
+  if (pixels->rect.empty()) return {};
+  LF_ASSIGN_OR_RETURN(PackedPlaneReader* const planes, PlanesOf(loading));
   const LfImageId in_store = {codes_[id.value].id};
-  LF_ASSIGN_OR_RETURN(const bool has_plane, loading->planes->Has(in_store, PlaneKind::kDisparity));
+  LF_ASSIGN_OR_RETURN(const bool has_plane, planes->Has(in_store, PlaneKind::kTrust));
   if (!has_plane) return {};
-  LF_ASSIGN_OR_RETURN(depths->numbers, loading->planes->Read(in_store, PlaneKind::kDisparity));
+  LF_ASSIGN_OR_RETURN(pixels->trust, planes->ReadTrust(in_store, pixels->rect));
+  return {};
+}
+
+Result<void> PackedStore::LoadDepths(Loading* loading, LfImageId id, LfDepths* depths) const {
+  LF_ASSIGN_OR_RETURN(PackedPlaneReader* const planes, PlanesOf(loading));
+  const LfImageId in_store = {codes_[id.value].id};
+  LF_ASSIGN_OR_RETURN(const bool has_plane, planes->Has(in_store, PlaneKind::kDisparity));
+  if (!has_plane) return {};
+  LF_ASSIGN_OR_RETURN(depths->numbers, planes->Read(in_store, PlaneKind::kDisparity));
   depths->least = densified_->plane_least;
   depths->greatest = densified_->plane_greatest;
   depths->divisor = densified_->plane_divisor;

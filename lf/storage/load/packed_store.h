@@ -57,13 +57,15 @@ class PackedStore : public LfImageStore {
     ImagePart part;  // the stored values that are converted to radiance
     Image<float> floats;
     LfPixels mosaic;                                         // the mosaic that is converted to RGB
-    std::optional<PackedPlaneReader> planes = std::nullopt;  // opened when depths are first loaded
+    std::optional<PackedPlaneReader> planes = std::nullopt;  // opened when planes are first loaded
   };
 
   PackedStore(const LightField& light_field, Mosaics mosaics, std::vector<PackedCode> codes);
   Result<void> LoadRecorded(Loading* loading, LfImageId id, const PixelRect& rect,
                             LfPixels* pixels) const;
   Result<void> LoadDepths(Loading* loading, LfImageId id, LfDepths* depths) const;
+  Result<void> LoadTrust(Loading* loading, LfImageId id, LfPixels* pixels) const;
+  Result<PackedPlaneReader*> PlanesOf(Loading* loading) const;
   Result<std::unique_ptr<Loading>> TakeLoading() const;
   void GiveBack(std::unique_ptr<Loading> loading) const;
 
@@ -72,7 +74,7 @@ class PackedStore : public LfImageStore {
   const Mosaics mosaics_;
   const std::vector<PackedCode> codes_;     // entry of each LF image, in the order of their ids
   std::optional<DisplayCurve> curve_;       // set if any LF image is encoded as kDisplay16
-  std::optional<DensifiedPlan> densified_;  // set if Load() loads depths
+  std::optional<DensifiedPlan> densified_;  // set if Load() loads depths and trust
   mutable std::mutex mutex_;
   mutable std::vector<std::unique_ptr<Loading>> loadings_;  // buffers that no load uses now
 };

@@ -118,7 +118,7 @@ class PackedStoreTest : public FolderTest {
   bool is_rounded_ = false;
 };
 
-TEST_F(PackedStoreTest, LoadsTheDepthsOfRecordedImages) {
+TEST_F(PackedStoreTest, LoadsTheDepthsOfRecordedImagesAndTheTrustInVirtualOnes) {
   AddImages<uint8_t>(3);
   field_.cameras[1].is_virtual = field_.cameras[4].is_virtual = true;
   PackedStorePlan plan;
@@ -129,6 +129,7 @@ TEST_F(PackedStoreTest, LoadsTheDepthsOfRecordedImages) {
     return plane;
   };
   PackedStoreWriter writer = PackedStoreWriter::Create(path_, field_, plan).value();
+  ASSERT_TRUE(writer.AddTrust({4}, Image<uint8_t>(kPackedWidth, kPackedHeight, 1, 170)));
   for (uint32_t i = 0; i < field_.size(); ++i) {
     const Result<RecordedImage> image = ReadRecordedImage(field_, {i}, kPackedWhole);
     ASSERT_TRUE(writer.Add({i}, CodeOf(*image, {.profile = CodecProfile::kLossless})));
@@ -145,7 +146,9 @@ TEST_F(PackedStoreTest, LoadsTheDepthsOfRecordedImages) {
       OpenStore(packed_, Mosaics::kAsRecorded, StoreContent::kPixelsAndDepths).value();
   EXPECT_TRUE(store->LoadsDepths());
   for (uint32_t i = 0; i < kCount; ++i) {
-    const LfDepths depths = Loaded(*store, {i}, {3, 5, 17, 11}).depths;
+    const LfPixels pixels = Loaded(*store, {i}, {3, 5, 17, 11});
+    const LfDepths& depths = pixels.depths;
+    EXPECT_EQ(pixels.trust.pixels(), Image<uint8_t>(i == 4 ? 14 : 0, 6, 1, 170).pixels());
     EXPECT_EQ(depths.numbers.empty(), field_.cameras[i].is_virtual || i == 5);
     if (depths.numbers.empty()) continue;
     EXPECT_EQ(depths.numbers.pixels(), plane_of(i).pixels());

@@ -52,4 +52,10 @@ Result<Image<uint16_t>> PackedPlaneReader::Read(LfImageId id, PlaneKind kind) {
   return DecodePlane(plane);
 }
 
+Result<Image<uint8_t>> PackedPlaneReader::ReadTrust(LfImageId id, const PixelRect& rect) {
+  LF_ASSIGN_OR_RETURN(const StoredPlane plane,
+                      ReadStoredPlane(&state_->database, id, PlaneKind::kTrust, state_->divisor));
+  return DecodeTrust(plane, rect);
+}
+
 }  // namespace lf

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Planes of a densified store: a packed store that also has virtual LF images
-// (doc/formats/packed_store.md, "Densified stores"). A plane holds numbers of 16 bits for the
-// pixels of a recorded LF image, such as its disparities. packed_store_writer.h writes planes.
+// (doc/formats/packed_store.md, "Densified stores"). A plane holds numbers for the pixels of an LF
+// image: 16 bits for those of a recorded one, such as its disparities, and 8 bits for the trust of
+// a virtual one. packed_store_writer.h writes planes.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +11,7 @@
 #include <optional>
 #include <string>
 
-#include "lf/camera/pinhole.h"
+#include "lf/core/geometry.h"
 #include "lf/core/ids.h"
 #include "lf/core/image.h"
 #include "lf/core/result.h"
@@ -20,8 +21,14 @@ namespace lf {
 enum class PlaneKind : uint8_t {
   kSwept = 0,      // an intermediate result, from which the densifier resumes
   kDisparity = 1,  // the final result
+  // Trust in the pixels of a virtual LF image (LfPixels::trust), one number for each, rounded to
+  // kTrustSteps steps. Virtual LF images without this plane, as earlier builds wrote them, are
+  // trusted.
+  kTrust = 2,
 };
-inline constexpr int kPlaneKindCount = 2;
+// Finer steps are noise, which would make the planes three times as large. Divides 255.
+inline constexpr int kTrustSteps = 15;
+inline constexpr int kPlaneKindCount = 3;
 
 // Everything about a densified store but its virtual LF images and planes.
 struct DensifiedPlan {
@@ -31,7 +38,8 @@ struct DensifiedPlan {
   // infinity, as in images that are rectified to a plane. The number 0 means unknown.
   double plane_least = 0;
   double plane_greatest = 0;
-  // A plane has one number for plane_divisor x plane_divisor LF pixels. From 1 to kMostDivisor.
+  // A plane of a recorded LF image has one number for plane_divisor x plane_divisor LF pixels. From
+  // 1 to kMostDivisor.
   int plane_divisor = 1;
 
   friend bool operator==(const DensifiedPlan&, const DensifiedPlan&) = default;
@@ -62,9 +70,13 @@ class PackedPlaneReader {
 
   // Returns true if the store has this plane. kInput: the file is damaged.
   Result<bool> Has(LfImageId id, PlaneKind kind);
-  // Reads a plane, [height][width][1]. kInput, naming the file: the store lacks the plane, or the
-  // plane is damaged.
+  // Reads a plane of a recorded LF image, [height][width][1]. kInput, naming the file: the store
+  // lacks the plane, or the plane is damaged.
   Result<Image<uint16_t>> Read(LfImageId id, PlaneKind kind);
+  // Reads the trust, 0 to LfPixels::kTrusted, in the pixels `rect` of a virtual LF image, which
+  // must contain a pixel and lie in the image. [rect.height()][rect.width()][1]. Errors as Read();
+  // also kInput: the image is smaller than `rect`.
+  Result<Image<uint8_t>> ReadTrust(LfImageId id, const PixelRect& rect);
 
  private:
   struct State;

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <thread>
@@ -51,6 +52,14 @@ Image<uint16_t> TestPlane(uint32_t i, PlaneKind kind) {
     plane.pixels()[k] = static_cast<uint16_t>(
         i == 1 ? 500 + k : RandomBits(6, i, k + 1000 * static_cast<size_t>(kind)));
   return plane;
+}
+
+// Trust has one number for each pixel, whatever the divisor of the other planes is.
+Image<uint8_t> TestTrust(uint32_t i) {
+  Image<uint8_t> trust(42, 25);
+  for (size_t k = 0; k < trust.pixels().size(); ++k)
+    trust.pixels()[k] = static_cast<uint8_t>(i == 4 ? k / 8 : RandomBits(8, i, k));
+  return trust;
 }
 
 class PackedPlanesTest : public ::testing::Test {
@@ -134,6 +143,70 @@ TEST_F(PackedPlanesTest, MarksAndPlanesAreReadToTheBit) {
     }
     EXPECT_EQ(IdentityOf(facts.light_field), IdentityOf(field_));
     ExpectPlanes();
+  }
+}
+
+TEST_F(PackedPlanesTest, TrustOfVirtualImagesIsReadAsItWasRounded) {
+  {
+    PackedStoreWriter writer = Writer();
+    ASSERT_TRUE(writer.AddTrust({4}, TestTrust(4)));
+    ASSERT_TRUE(writer.Commit());
+    ASSERT_TRUE(writer.AddTrust({5}, TestTrust(5)));  // not committed
+  }
+  PackedStoreWriter writer = Writer();
+  EXPECT_TRUE(writer.HasPlane({4}, kTrust));
+  EXPECT_FALSE(writer.HasPlane({5}, kTrust));
+  ASSERT_TRUE(writer.AddTrust({6}, TestTrust(6)));
+  ASSERT_TRUE(writer.DropPlanes(kSwept));
+  Finish(std::move(writer));
+  ExpectPlanes();
+  PackedPlaneReader reader = PackedPlaneReader::Open(path_).value();
+  for (uint32_t i = 0; i < kAll; ++i) {
+    EXPECT_EQ(reader.Has({i}, kTrust).value(), i == 4 || i == 6) << i;
+    const auto whole = reader.ReadTrust({i}, {0, 0, 42, 25});
+    const auto part = reader.ReadTrust({i}, {3, 5, 40, 24});
+    ASSERT_EQ(whole.has_value(), i == 4 || i == 6);
+    if (!whole) {
+      EXPECT_NE(whole.error().message.find("lacks the plane trust of LF image"), std::string::npos);
+      continue;
+    }
+    for (size_t k = 0; k < whole->pixels().size(); ++k) {
+      const int trust = TestTrust(i).pixels()[k], read = whole->pixels()[k];
+      ASSERT_EQ(read % 17, 0);
+      ASSERT_LE(std::abs(read - trust), 8);
+    }
+    ASSERT_EQ(std::pair(part->width(), part->height()), std::pair(37, 19));
+    for (int y = 0; y < 19; ++y)
+      for (int x = 0; x < 37; ++x) ASSERT_EQ(part->at(x, y), whole->at(x + 3, y + 5));
+    const auto beyond = reader.ReadTrust({i}, {0, 0, 43, 25});
+    ASSERT_FALSE(beyond);
+    EXPECT_NE(beyond.error().message.find("plane trust of LF image"), std::string::npos);
+  }
+}
+
+TEST_F(PackedPlanesTest, DamagedTrustIsAnError) {
+  PackedStoreWriter writer = Writer();
+  ASSERT_TRUE(writer.AddTrust({4}, TestTrust(4)));
+  Finish(std::move(writer));
+  const std::string good = EncodeTrust(TestTrust(4));
+  std::string flipped = good;
+  flipped.back() = static_cast<char>(flipped.back() ^ 1);
+  for (const std::string& code :
+       {flipped, good.substr(0, good.size() / 2), EncodeTrust(Image<uint8_t>(42, 24)),
+        EncodePlane(Image<uint16_t>(42, 25)), std::string("no encoded image"),
+        EncodeImage(Image<uint8_t>(42, 25, 1, 16), PixelLayout::kGrey,
+                    {.profile = CodecProfile::kLossless})}) {
+    {
+      Database database = Database::OpenToAppend(path_, kStoreFormat).value();
+      Statement update = database.Prepare("update planes set plane = ?1 where id = 4").value();
+      update.BindBlob(0, code);
+      ASSERT_TRUE(update.Run());
+    }
+    const auto trust = PackedPlaneReader::Open(path_).value().ReadTrust({4}, {0, 0, 42, 25});
+    ASSERT_FALSE(trust);
+    EXPECT_EQ(trust.error().kind, ErrorKind::kInput);
+    EXPECT_TRUE(trust.error().message.starts_with(path_.string() + ": plane trust of LF image 4"))
+        << trust.error().message;
   }
 }
 
@@ -350,8 +423,8 @@ TEST_F(PackedPlanesTest, APlaneOfAnotherKindIsDamage) {
 }
 
 TEST_F(PackedPlanesTest, AnImpossiblePlaneOfAnUnfinishedStoreIsAnError) {
-  for (const char* const row :
-       {"(4, 'swept', x'')", "(7, 'swept', x'')", "(-1, 'swept', x'')", "(0, 'other', x'')"}) {
+  for (const char* const row : {"(4, 'swept', x'')", "(7, 'swept', x'')", "(-1, 'swept', x'')",
+                                "(0, 'other', x'')", "(0, 'trust', x'')"}) {
     { Writer(); }
     const fs::path unfinished = UnfinishedPath(path_);
     ASSERT_TRUE(Database::OpenToAppend(unfinished, kStoreFormat)

@@ -47,10 +47,15 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size_bytes) {
     }
   if (auto planes = lf::PackedPlaneReader::Open(path))
     for (uint32_t i = 0; i < 4; ++i)
-      for (const lf::PlaneKind kind : {lf::PlaneKind::kSwept, lf::PlaneKind::kDisparity}) {
+      for (const lf::PlaneKind kind :
+           {lf::PlaneKind::kSwept, lf::PlaneKind::kDisparity, lf::PlaneKind::kTrust}) {
         const auto has = planes->Has({i}, kind);
         const auto plane = planes->Read({i}, kind);
         LF_CHECK(plane ? !has || *has : plane.error().message.starts_with(path.string()));
+        if (kind != lf::PlaneKind::kTrust) continue;
+        const auto trust = planes->ReadTrust({i}, {1, 1, 3, 2});
+        LF_CHECK(trust ? trust->width() == 2 && trust->height() == 1
+                       : trust.error().message.starts_with(path.string()));
       }
   std::error_code ignored;
   std::filesystem::remove(path, ignored);

@@ -77,7 +77,7 @@ struct PackedStoreWriter::State {
   Result<void> OpenShard(int number);
   Result<void> BeginInBatch();
   Result<void> Insert(LfImageId id, const CodedImage& image);
-  Result<void> InsertPlane(LfImageId id, PlaneKind kind, std::string_view code);
+  Result<void> AddPlane(LfImageId id, PlaneKind kind, PlaneSize size, std::string_view code);
   Result<void> CommitIfDue();
   Result<void> CommitBatch();
   Result<void> FinishFiles();
@@ -214,11 +214,17 @@ Result<void> PackedStoreWriter::State::Insert(LfImageId id, const CodedImage& im
   return CommitIfDue();
 }
 
-Result<void> PackedStoreWriter::State::InsertPlane(LfImageId id, PlaneKind kind,
-                                                   std::string_view code) {
-  LF_RETURN_IF_ERROR(BeginInBatch());
-  LF_RETURN_IF_ERROR(planes->Insert(id, kind, code));
-  return CommitIfDue();
+Result<void> PackedStoreWriter::State::AddPlane(LfImageId id, PlaneKind kind, PlaneSize size,
+                                                std::string_view code) {
+  const std::lock_guard lock_of_state(mutex);
+  if (failed) return *failed;
+  LF_CHECK(planes && planes->Fits(id, kind, size) && !planes->Has(id, kind));
+  const auto insert = [&]() -> Result<void> {
+    LF_RETURN_IF_ERROR(BeginInBatch());
+    LF_RETURN_IF_ERROR(planes->Insert(id, kind, code));
+    return CommitIfDue();
+  };
+  return Kept(insert());
 }
 
 // Commits the batch if it is large or old enough.
@@ -370,13 +376,13 @@ bool PackedStoreWriter::HasPlane(LfImageId id, PlaneKind kind) const {
 
 Result<void> PackedStoreWriter::AddPlane(LfImageId id, PlaneKind kind,
                                          const Image<uint16_t>& plane) {
-  const std::string code = EncodePlane(plane);
-  const std::lock_guard lock(state_->mutex);
-  State& state = *state_;
-  if (state.failed) return *state.failed;
-  LF_CHECK(state.planes && state.planes->Fits(id, {plane.width(), plane.height()}));
-  LF_CHECK(!state.planes->Has(id, kind));
-  return state.Kept(state.InsertPlane(id, kind, code));
+  LF_CHECK(kind != PlaneKind::kTrust);
+  return state_->AddPlane(id, kind, {plane.width(), plane.height()}, EncodePlane(plane));
+}
+
+Result<void> PackedStoreWriter::AddTrust(LfImageId id, const Image<uint8_t>& trust) {
+  return state_->AddPlane(id, PlaneKind::kTrust, {trust.width(), trust.height()},
+                          EncodeTrust(trust));
 }
 
 Result<Image<uint16_t>> PackedStoreWriter::ReadPlane(LfImageId id, PlaneKind kind) const {

@@ -109,7 +109,11 @@ class PackedStoreWriter {
   // Adds a plane of a recorded LF image, which the store does not have. Its size must be
   // PlaneSizeOf() of the LF image. Errors as Add().
   Result<void> AddPlane(LfImageId id, PlaneKind kind, const Image<uint16_t>& plane);
-  // Reads a plane for which HasPlane() is true. kInput: it is damaged. kOutput: the disk fails.
+  // Adds the plane kTrust of a virtual LF image, which has the size of the LF image: trust from 0
+  // to LfPixels::kTrusted, which is rounded to kTrustSteps steps. Errors as Add().
+  Result<void> AddTrust(LfImageId id, const Image<uint8_t>& trust);
+  // Reads a plane of a recorded LF image for which HasPlane() is true. kInput: it is damaged.
+  // kOutput: the disk fails.
   Result<Image<uint16_t>> ReadPlane(LfImageId id, PlaneKind kind) const;
   // Commits, and removes all planes of a kind for good. Later planes and LF images reuse their
   // space, but the file does not become smaller. kOutput: the disk fails.

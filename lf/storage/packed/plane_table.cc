@@ -8,6 +8,7 @@
 #include <utility>
 #include <variant>
 
+#include "lf/light_field/model/lf_pixels.h"
 #include "lf/pixels/codec/lf_image_codec.h"
 #include "lf/storage/tables/stored_numbers.h"
 
@@ -15,7 +16,42 @@ namespace lf {
 namespace {
 
 // Names of the kinds, in the order of the enumeration.
-constexpr const char* kPlaneKindNames[kPlaneKindCount] = {"swept", "disparity"};
+constexpr const char* kPlaneKindNames[kPlaneKindCount] = {"swept", "disparity", "trust"};
+
+// Trust of one step.
+constexpr int kTrustUnit = LfPixels::kTrusted / kTrustSteps;
+static_assert(kTrustUnit * kTrustSteps == LfPixels::kTrusted);
+
+// Decodes the pixels `rect` of a plane of stored numbers of type T; without `rect`, all of it.
+template <class T>
+Result<Image<T>> Decode(const StoredPlane& stored, const std::optional<PixelRect>& rect) {
+  const auto damaged = [&](std::string_view what) {
+    return InputError(fmt::format("{}: {}; copy or make it again", stored.place, what));
+  };
+  const Result<CodeInfo> info = ReadCodeInfo(stored.code);
+  if (!info) return damaged(info.error().message);
+  // The head is checked first, so that no more memory is allocated than the plane needs.
+  constexpr int kBits = 8 * sizeof(T);
+  if (info->width != stored.size.width || info->height != stored.size.height ||
+      info->bits != kBits || info->layout != PixelLayout::kGrey ||
+      info->profile != CodecProfile::kLossless)
+    return damaged(fmt::format("is damaged: expected {} x {} lossless grey numbers of {} bits",
+                               stored.size.width, stored.size.height, kBits));
+  const PixelRect whole = {0, 0, info->width, info->height};
+  if (rect && (rect->empty() || Intersection(*rect, whole) != *rect))
+    return damaged("is smaller than its LF image");
+  DecodedPart part;
+  if (const Result<void> decoded = DecodeImage(stored.code, rect.value_or(whole), &part); !decoded)
+    return damaged(decoded.error().message);
+  auto& decoded = std::get<Image<T>>(part.pixels);
+  if (!rect || part.rect == *rect) return std::move(decoded);
+  Image<T> cut(rect->width(), rect->height());
+  for (int y = 0; y < cut.height(); ++y)
+    std::copy_n(
+        decoded.row(y + rect->y_begin - part.rect.y_begin) + rect->x_begin - part.rect.x_begin,
+        cut.width(), cut.row(y));
+  return cut;
+}
 
 }  // namespace
 
@@ -63,7 +99,8 @@ Result<StoredPlane> ReadStoredPlane(Database* database, LfImageId id, PlaneKind 
   LF_ASSIGN_OR_RETURN(const int64_t width, select.Integer(1, 1, kMostSide_px));
   LF_ASSIGN_OR_RETURN(const int64_t height, select.Integer(2, 1, kMostSide_px));
   plane.code = code;
-  plane.size = PlaneSizeOf(static_cast<int>(width), static_cast<int>(height), divisor);
+  plane.size = PlaneSizeOf(static_cast<int>(width), static_cast<int>(height),
+                           kind == PlaneKind::kTrust ? 1 : divisor);
   return plane;
 }
 
@@ -71,21 +108,29 @@ std::string EncodePlane(const Image<uint16_t>& plane) {
   return EncodeImage(plane, PixelLayout::kGrey, {.profile = CodecProfile::kLossless});
 }
 
+std::string EncodeTrust(const Image<uint8_t>& trust) {
+  Image<uint8_t> steps(trust.width(), trust.height());
+  std::transform(
+      trust.pixels().begin(), trust.pixels().end(), steps.pixels().begin(),
+      [](uint8_t value) { return static_cast<uint8_t>((value + kTrustUnit / 2) / kTrustUnit); });
+  return EncodeImage(steps, PixelLayout::kGrey, {.profile = CodecProfile::kLossless});
+}
+
 Result<Image<uint16_t>> DecodePlane(const StoredPlane& stored) {
-  const auto damaged = [&](std::string_view what) {
-    return InputError(fmt::format("{}: {}; copy or make it again", stored.place, what));
-  };
-  const Result<CodeInfo> info = ReadCodeInfo(stored.code);
-  if (!info) return damaged(info.error().message);
-  // The head is checked first, so that no more memory is allocated than the plane needs.
-  if (info->width != stored.size.width || info->height != stored.size.height || info->bits != 16 ||
-      info->layout != PixelLayout::kGrey || info->profile != CodecProfile::kLossless)
-    return damaged(fmt::format("is damaged: expected {} x {} lossless grey numbers of 16 bits",
-                               stored.size.width, stored.size.height));
-  DecodedPart part;
-  if (const Result<void> decoded = DecodeImage(stored.code, &part); !decoded)
-    return damaged(decoded.error().message);
-  return std::get<Image<uint16_t>>(std::move(part.pixels));
+  return Decode<uint16_t>(stored, std::nullopt);
+}
+
+Result<Image<uint8_t>> DecodeTrust(const StoredPlane& stored, const PixelRect& rect) {
+  LF_ASSIGN_OR_RETURN(Image<uint8_t> trust, Decode<uint8_t>(stored, rect));
+  for (uint8_t& value : trust.pixels()) {
+    if (value > kTrustSteps)
+      return InputError(
+          fmt::format("{}: is damaged: has the number {}, expected at most {}; copy or "
+                      "make it again",
+                      stored.place, value, kTrustSteps));
+    value = static_cast<uint8_t>(value * kTrustUnit);
+  }
+  return trust;
 }
 
 Result<PlaneTable> PlaneTable::Open(const Settings& settings, const LightField& light_field,
@@ -94,8 +139,8 @@ Result<PlaneTable> PlaneTable::Open(const Settings& settings, const LightField& 
   PlaneTable table(database, divisor, std::move(insert));
   for (const LfCamera& camera : light_field.cameras) {
     const Intrinsics& k = light_field.intrinsics[camera.intrinsics_index];
-    table.sizes_.push_back(camera.is_virtual ? PlaneSize()
-                                             : PlaneSizeOf(k.width_px, k.height_px, divisor));
+    table.is_virtual_.push_back(camera.is_virtual);
+    table.sizes_.push_back(PlaneSizeOf(k.width_px, k.height_px, camera.is_virtual ? 1 : divisor));
   }
   for (std::vector<bool>& has : table.has_) has.resize(light_field.size());
   LF_RETURN_IF_ERROR(ForEachRow(
@@ -105,8 +150,9 @@ Result<PlaneTable> PlaneTable::Open(const Settings& settings, const LightField& 
         const auto* const name =
             std::find(std::begin(kPlaneKindNames), std::end(kPlaneKindNames), kind);
         const auto index = static_cast<size_t>(id);
-        if (id < 0 || index >= light_field.size() || light_field.cameras[index].is_virtual ||
-            name == std::end(kPlaneKindNames))
+        const bool is_trust = kind == NameOf(PlaneKind::kTrust);
+        if (id < 0 || index >= light_field.size() || name == std::end(kPlaneKindNames) ||
+            light_field.cameras[index].is_virtual != is_trust)
           return settings.Damaged(
               fmt::format("it has a plane {} of LF image {}, which cannot exist", kind, id));
         table.has_[name - std::begin(kPlaneKindNames)][index] = true;

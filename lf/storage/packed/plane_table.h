@@ -35,19 +35,26 @@ struct StoredPlane {
 // Reads a plane. An error of the database's kind if it is missing or damaged.
 Result<StoredPlane> ReadStoredPlane(Database* database, LfImageId id, PlaneKind kind, int divisor);
 std::string EncodePlane(const Image<uint16_t>& plane);
+// Encodes trust, rounded to kTrustSteps steps.
+std::string EncodeTrust(const Image<uint8_t>& trust);
 // kInput: the plane is damaged.
 Result<Image<uint16_t>> DecodePlane(const StoredPlane& stored);
+// Decodes a part of a plane of trust. kInput: the plane is damaged, or smaller than `rect`.
+Result<Image<uint8_t>> DecodeTrust(const StoredPlane& stored, const PixelRect& rect);
 
 // The planes of a store that is being written. It must be closed before the database.
 class PlaneTable {
  public:
-  // Finds the planes that the store has. kInput: a plane belongs to no recorded LF image.
+  // Finds the planes that the store has. kInput: a plane belongs to no LF image that has such
+  // planes: recorded ones have all kinds but kTrust, which virtual ones have.
   static Result<PlaneTable> Open(const Settings& settings, const LightField& light_field,
                                  int divisor, Database* database);
 
   bool Has(LfImageId id, PlaneKind kind) const;
-  // Returns true if the LF image is recorded, and its plane must have this size.
-  bool Fits(LfImageId id, PlaneSize size) const { return sizes_[id.value] == size; }
+  // Returns true if the LF image has planes of this kind, and they must have this size.
+  bool Fits(LfImageId id, PlaneKind kind, PlaneSize size) const {
+    return is_virtual_[id.value] == (kind == PlaneKind::kTrust) && sizes_[id.value] == size;
+  }
   Result<void> Insert(LfImageId id, PlaneKind kind, std::string_view code);
   Result<StoredPlane> Read(LfImageId id, PlaneKind kind) {
     return ReadStoredPlane(database_, id, kind, divisor_);
@@ -62,7 +69,8 @@ class PlaneTable {
   Database* database_;
   int divisor_;
   Statement insert_;
-  std::vector<PlaneSize> sizes_;  // of each LF image; no pixels: a virtual one, without planes
+  std::vector<bool> is_virtual_;            // [LF image]
+  std::vector<PlaneSize> sizes_;            // [LF image]: size of its planes
   std::vector<bool> has_[kPlaneKindCount];  // [kind][LF image]
 };
 
