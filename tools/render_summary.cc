@@ -78,6 +78,16 @@ void TellRebinning(const RenderReport& report) {
                                   : "there was no room for all rays");
 }
 
+// Reports how much of the pictures rests on virtual LF images, and how much of it is not trusted.
+void TellVirtualLight(const RenderReport& report) {
+  const std::optional<VirtualLight> light = report.MeanVirtualLight();
+  if (!light) return;
+  LogInfo(
+      "virtual light: {:.1f} % of the light of the frames rests on virtual LF images; it is not "
+      "trusted in {:.1f} % of the elements, which are out of focus",
+      100 * light->densified_share, 100 * light->doubtful_share);
+}
+
 // Reports which lens weights the frames have: area, hat, or a mix of both.
 //   is_chosen  true: by the program, not by an option
 void TellLensWeights(const RenderReport& report, bool is_chosen) {
@@ -199,6 +209,7 @@ void SummariseRender(const RenderReport& report, const std::string& look_at,
           : "",
       report.peak_memory_bytes >> 20);
   TellRebinning(report);
+  TellVirtualLight(report);
   TellLensWeights(report, weights_are_chosen);
   TellNoise(report);
   WarnOfEmptyElements(report);

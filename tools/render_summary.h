@@ -14,9 +14,10 @@
 
 namespace lf {
 
-// Logs counts, speed and memory; rebinned rays, lens weights and noise; warnings about elements
-// without rays, and about lenses that exceed the capture or contain few LF images; and where to
-// look at the result. EndOfRender() (render_end.h) reports the LF images that were left out.
+// Logs counts, speed and memory; rebinned rays, virtual light, lens weights and noise; warnings
+// about elements without rays, and about lenses that exceed the capture or contain few LF images;
+// and where to look at the result. EndOfRender() (render_end.h) reports the LF images that were
+// left out.
 //   look_at             path of the contact sheet, or of the folder of the results
 //   weights_are_chosen  true: the program chose the lens weights; false: an option did
 void SummariseRender(const RenderReport& report, const std::string& look_at,

@@ -79,6 +79,14 @@ class Frame:
         return self._core.densified
 
     @property
+    def trust(self) -> Optional[npt.NDArray[np.float32]]:
+        """How far the light of all LF images can be trusted, from 0 to 1, of shape (height, width).
+
+        1 where the frame is in focus and therefore shows recorded light. None unless `densified` is there.
+        """
+        return self._core.trust
+
+    @property
     def image_count(self) -> int:
         """Number of recorded LF images with a ray in the frame."""
         return self._core.image_count

@@ -237,7 +237,7 @@ py::tuple StateOf(const Frame& frame) {
   const DevelopedFrame& p = frame.picture;
   return py::make_tuple(TextOf(frame.notes), ArrayCopy(p.rgb), ArrayCopy(p.ray_count),
                         ArrayCopy(p.coverage), ArrayCopy(p.opacity), ArrayCopy(p.effective_count),
-                        ArrayCopy(p.interpolated), ArrayCopy(p.densified),
+                        ArrayCopy(p.interpolated), ArrayCopy(p.densified), ArrayCopy(p.trust),
                         ArrayCopy(frame.has_light), frame.more_metadata);
 }
 
@@ -245,11 +245,11 @@ Frame FrameOf(const py::tuple& state) {
   DevelopedFrame picture = {ImageOf<float>(state[1]), ImageOf<uint32_t>(state[2]),
                             ImageOf<float>(state[3]), ImageOf<float>(state[4]),
                             ImageOf<float>(state[5]), ImageOf<float>(state[6]),
-                            ImageOf<float>(state[7])};
+                            ImageOf<float>(state[7]), ImageOf<float>(state[8])};
   PlateNotes notes = Take(PlateNotesOf(state[0].cast<PlateEntries>(), picture.rgb.width(),
                                        picture.rgb.height(), "a pickled frame"));
-  return {std::move(picture), std::move(notes), ImageOf<uint8_t>(state[8]),
-          state[9].cast<ImageMetadata>()};
+  return {std::move(picture), std::move(notes), ImageOf<uint8_t>(state[9]),
+          state[10].cast<ImageMetadata>()};
 }
 
 }  // namespace
@@ -298,6 +298,9 @@ void AddFrames(py::module_& module) {
       .def_property_readonly(
           "densified",
           [](const py::object& self) { return Show(self.cast<Frame&>().picture.densified, self); })
+      .def_property_readonly(
+          "trust",
+          [](const py::object& self) { return Show(self.cast<Frame&>().picture.trust, self); })
       .def_property_readonly("image_count", [](const Frame& f) { return f.notes.rays.image_count; })
       .def_property_readonly("metadata", [](const Frame& f) { return MetadataOf(f); })
       .def("save", &SaveFrame)

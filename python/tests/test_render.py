@@ -185,6 +185,7 @@ def test_arrays_of_a_frame(field, path):
     assert frame.coverage.shape == (80, 120) and frame.coverage.max() == 1
     assert frame.effective is not None and frame.effective.max() <= 49
     assert frame.opacity is None and frame.interpolated is None and frame.densified is None
+    assert frame.trust is None
     assert frame.metadata["lf:frame"] == 1 or "Software" in frame.metadata
     assert frame.camera == path[0]
     kept = frame.rgb

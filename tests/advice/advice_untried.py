@@ -42,8 +42,6 @@ UNTRIED = {
     "statistic_film: has no sums that could be kept": BEFORE,
     "packed_store_writer: an unfinished store of this name exists": BEFORE,
     "packed_store: compress the light field again with the --image-alpha of this run": BEFORE,
-    "check_film_settings: composite the LF images over a background with --background, or ":
-        "needs virtual LF images with opacity, which no program of ours writes",
     "packed_store_file: is an unfinished packed store": "needs an unfinished store that somebody has renamed",
     "packed_store_file: lfcompressor --resume": "needs an unfinished store that somebody has renamed",
     "packed_store_writer: give a larger --shard-size": CAPTURE + "thousands of shards",

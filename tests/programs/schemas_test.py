@@ -181,6 +181,10 @@ class SchemasTest(ProgramTestCase):
         self.prints("report", "lfrenderer", *(self.folder / "packages").glob("*.lfp"), "-o", self.folder / "film",
                     "--no-guard")
         self.valid_file("report", next((self.folder / "film").glob("report-*.json")))
+        sharp = self.folder / "sharp.yaml"
+        sharp.write_text(re.sub("shutter.*\n", "", self.still_path.read_text()))
+        guarded = self.prints("report", "lfrenderer", self.densified, sharp, "-o", self.folder / "guarded")
+        self.assertGreater(guarded["densified_share"], guarded["doubtful_share"])
         slow = self.slow_path()
         out = self.interrupted(self.many, slow, "--require", "noise<=0.01")
         for record in (out / "partial").glob("*.json"):

@@ -30,10 +30,10 @@ constexpr int kPictureSide_px = 1280;
 constexpr milliseconds kBetweenPictures(250);
 constexpr int kPictureTimes = 3;
 
-//   encoding  of the light field; the frames of mosaics and those with alpha cannot be guarded
+//   encoding  of the light field; the frames of mosaics cannot be guarded
 FilmSettings SettingsOf(const PageArguments& arguments, const RadianceEncoding& encoding) {
   FilmSettings film = arguments.film;
-  film.guard = encoding.bayer == BayerPattern::kNone && !encoding.HasOpacity();
+  film.guard = encoding.bayer == BayerPattern::kNone;
   return film;
 }
 

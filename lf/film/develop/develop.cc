@@ -10,6 +10,7 @@
 
 #include "lf/film/develop/channel_fill.h"
 #include "lf/film/develop/develop_opacity.h"
+#include "lf/film/develop/guard_share.h"
 #include "lf/film/plate/sensor_plate.h"
 
 namespace lf {
@@ -33,36 +34,24 @@ uint32_t KnownCount(const Completion* completion, int x, int y, uint32_t count) 
   return is_completed ? std::numeric_limits<uint32_t>::max() : count;
 }
 
-double MeanOf(const ElementSum& rays) {
-  return static_cast<double>(rays.sum) / static_cast<double>(rays.count);
-}
-
-// Returns the share m of all rays, virtual ones included, in element (x, y) of a guarded plate
-// (Develop()): 1 if the element has no recorded ray.
-double DensifiedShare(const SensorPlate& plate, const DevelopOptions& options, int x, int y) {
-  const ElementSum rays = plate.At(x, y, SensorPlate::kDefocusChannel);
-  if (rays.count == 0) return 1;
-  const double defocus =
-      (MeanOf(rays) - options.transparent) / (options.opaque - options.transparent);
-  const double s = std::clamp((defocus - kGuardFrom) / (kGuardTo - kGuardFrom), 0.0, 1.0);
-  return s * s * (3 - 2 * s);
-}
-
 // Computes the averages, ray counts and coverage of the elements of row y. Returns, for each
 // channel, true if an element of the row must be filled or smoothed.
 std::array<bool, kChannels> AverageRow(const SensorPlate& plate, const DevelopOptions& options,
                                        uint32_t rays_needed, int y, DevelopedFrame& frame,
-                                       Image<float>& mean) {
+                                       std::atomic<uint64_t>& doubtful_count, Image<float>& mean) {
   std::array<bool, kChannels> is_thin = {};
   for (int x = 0; x < plate.width(); ++x) {
     int collected = 0;
-    double densified = 0;
-    if (plate.is_guarded())
-      frame.densified.at(x, y) =
-          static_cast<float>(densified = DensifiedShare(plate, options, x, y));
+    GuardShare guard;
+    if (plate.is_guarded()) {
+      guard = GuardShareOf(plate, options, x, y);
+      frame.densified.at(x, y) = static_cast<float>(guard.densified);
+      frame.trust.at(x, y) = static_cast<float>(guard.trust);
+      if (guard.is_doubtful) ++doubtful_count;
+    }
     for (int c = 0; c < kChannels; ++c) {
       ElementSum rays = plate.At(x, y, c), all;
-      if (densified > 0) all = plate.At(x, y, SensorPlate::kAllRaysChannel + c);
+      if (guard.densified > 0) all = plate.At(x, y, plate.all_rays_channel() + c);
       if (rays.count == 0) std::swap(rays, all);
       frame.ray_count.at(x, y, c) = static_cast<uint32_t>(
           std::min<uint64_t>(rays.count, std::numeric_limits<uint32_t>::max()));
@@ -72,9 +61,9 @@ std::array<bool, kChannels> AverageRow(const SensorPlate& plate, const DevelopOp
       double average = 0;
       if (rays.count > 0) {
         ++collected;
-        average = MeanOf(rays);
+        average = rays.Mean();
       }
-      if (all.count > 0) average += densified * (MeanOf(all) - average);
+      if (all.count > 0) average += guard.densified * (all.Mean() - average);
       if (share > 0) average += share * (options.completion->rgb.at(x, y, c) - average);
       mean.at(x, y, c) = static_cast<float>((average - options.pedestal) / options.scale);
     }
@@ -97,7 +86,7 @@ DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, 
   DevelopedFrame frame{Image<float>(width, height, kChannels),
                        Image<uint32_t>(width, height, kChannels), Image<float>(width, height)};
   if (options.completion != nullptr) frame.interpolated = Image<float>(width, height);
-  if (plate.is_guarded()) frame.densified = Image<float>(width, height);
+  if (plate.is_guarded()) frame.densified = frame.trust = Image<float>(width, height);
   Image<float> mean(width, height, kChannels);
   std::atomic<bool> is_ended = false;
   const auto ends = [&] {
@@ -105,10 +94,13 @@ DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, 
     return is_ended.load();
   };
   std::vector<std::array<bool, kChannels>> row_is_thin(height);
+  std::atomic<uint64_t> doubtful_count = 0;
   pool.ForEach(height, [&](size_t y) {
     if (ends()) return;
-    row_is_thin[y] = AverageRow(plate, options, rays_needed, static_cast<int>(y), frame, mean);
+    row_is_thin[y] =
+        AverageRow(plate, options, rays_needed, static_cast<int>(y), frame, doubtful_count, mean);
   });
+  frame.doubtful_count = doubtful_count;
 
   Image<uint32_t> known;
   if (options.completion != nullptr) {

@@ -51,8 +51,8 @@ struct DevelopOptions {
   // was recorded, filled or interpolated in some channel, and 0 elsewhere.
   bool adds_opacity = false;
   // For a plate with opacities: opacity = (mean - transparent) / (opaque - transparent), where mean
-  // is the sum of values / number of rays of the opacity channel. Likewise for the defocus of a
-  // guarded plate.
+  // is the sum of values / number of rays of the opacity channel. Likewise for the defocus and the
+  // trust of a guarded plate.
   double transparent = 0;
   double opaque = 65535;
 
@@ -71,6 +71,10 @@ struct DevelopOptions {
 // recorded rays that are out of focus.
 inline constexpr double kGuardFrom = 0.1;
 inline constexpr double kGuardTo = 0.2;
+// It shows the rays of all LF images only where their trust is above kTrustFrom, without loss from
+// kTrustTo on.
+inline constexpr double kTrustFrom = 0.3;
+inline constexpr double kTrustTo = 0.6;
 
 // Averages the rays of every element and channel, and mixes (1 - share) of the average with share
 // of the completion; the completion is taken alone if no ray was collected. An element without
@@ -85,9 +89,10 @@ inline constexpr double kGuardTo = 0.2;
 // without a ray, and kSmoothRadius_px otherwise, even if it contains fewer. The element's own
 // value, if it has one, is one of the v_i, with d = 0.5. Elements with completion count as
 // collected, with enough rays. Then Develop() applies white balance and linear_srgb_from_camera.
-// The average of a guarded plate is R + m (V - R), where R is the average of the recorded rays, V
-// that of all rays, and m grows from 0 to 1 like s^2 (3 - 2 s) where s is the share of defocus from
-// kGuardFrom to kGuardTo. Without recorded rays it is V.
+// The average of a guarded plate is R + m t (V - R), where R is the average of the recorded rays, V
+// that of all rays, m grows from 0 to 1 like s^2 (3 - 2 s) where s is the share of defocus from
+// kGuardFrom to kGuardTo, and t likewise where s is the trust from kTrustFrom to kTrustTo. Without
+// recorded rays it is V, whatever the trust. The opacity has the same formula.
 // Opacities are averaged and filled like a colour, from the same neighbours, and clipped. Counts
 // above 2^32 - 1 become 2^32 - 1. The bits do not depend on the number of threads.
 DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, ThreadPool& pool);

@@ -5,9 +5,11 @@
 #include <atomic>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 #include "lf/core/check.h"
 #include "lf/film/develop/channel_fill.h"
+#include "lf/film/develop/guard_share.h"
 
 namespace lf {
 
@@ -23,11 +25,18 @@ Image<float> DevelopOpacity(const SensorPlate& plate, const DevelopOptions& opti
   pool.ForEach(static_cast<size_t>(height), [&](size_t row) {
     const int y = static_cast<int>(row);
     for (int x = 0; x < width; ++x) {
-      const ElementSum rays = plate.At(x, y, SensorPlate::kOpacityChannel);
+      ElementSum rays = plate.At(x, y, SensorPlate::kOpacityChannel), all;
+      double densified = 0;
+      if (plate.is_guarded()) {
+        densified = GuardShareOf(plate, options, x, y).densified;
+        if (densified > 0) all = plate.At(x, y, plate.all_opacity_channel());
+        if (rays.count == 0) std::swap(rays, all);
+      }
       count.at(x, y) = static_cast<uint32_t>(std::min(rays.count, kMostCount));
       if (count.at(x, y) < rays_needed) is_thin = true;
       if (rays.count == 0) continue;
-      const double average = static_cast<double>(rays.sum) / static_cast<double>(rays.count);
+      double average = rays.Mean();
+      if (all.count > 0) average += densified * (all.Mean() - average);
       mean.at(x, y) = static_cast<float>((average - options.transparent) /
                                          (options.opaque - options.transparent));
     }

@@ -11,7 +11,8 @@
 
 namespace lf {
 
-// Averages opacities [height][width] and fills them as Develop() fills colours. Opacities are
+// Averages opacities [height][width], those of a guarded plate by its formula, and fills them as
+// Develop() fills colours. Opacities are
 // summed over the same rays as colours, so the same elements are filled from the same neighbours.
 //   is_interrupted  called by any thread; once it returns true, the result must not be used
 Image<float> DevelopOpacity(const SensorPlate& plate, const DevelopOptions& options,

@@ -110,17 +110,23 @@ TEST(Develop, OpacityIsExactWhereAllRaysAgreeAndNeverOutsideOfItsRange) {
 // Every eleventh element of GuardedOf() has no recorded rays.
 bool IsRecorded(int x, int y) { return (x + y) % 11 != 0; }
 
-// Returns a guarded plate with the colours of two plates and the same defocus in every element.
-SensorPlate GuardedOf(const SensorPlate& recorded, const SensorPlate& all, double defocus) {
-  SensorPlate plate(recorded.width(), recorded.height(), PlateKind::kGuarded);
+// Returns a guarded plate with the colours of two plates, and the same defocus and trust in every
+// element. Opacities are the red channels.
+SensorPlate GuardedOf(const SensorPlate& recorded, const SensorPlate& all, double defocus,
+                      double trust, PlateKind kind = PlateKind::kGuarded) {
+  SensorPlate plate(recorded.width(), recorded.height(), kind);
+  const int colours = plate.has_opacity() ? 4 : 3;
   for (int y = 0; y < plate.height(); ++y)
     for (int x = 0; x < plate.width(); ++x) {
+      const auto rays_of = [](double value, uint64_t count) {
+        return ElementSum{static_cast<uint64_t>(value * 60000) * count, count};
+      };
       const uint64_t count = IsRecorded(x, y) ? recorded.At(x, y, 1).count : 0;
-      plate.Add(x, y, SensorPlate::kDefocusChannel,
-                {static_cast<uint64_t>(defocus * 60000) * count, count});
-      for (int c = 0; c < 3; ++c) {
-        if (count > 0) plate.Add(x, y, c, recorded.At(x, y, c));
-        plate.Add(x, y, SensorPlate::kAllRaysChannel + c, all.At(x, y, c));
+      plate.Add(x, y, plate.defocus_channel(), rays_of(defocus, count));
+      plate.Add(x, y, plate.trust_channel(), rays_of(trust, all.At(x, y, 1).count));
+      for (int c = 0; c < colours; ++c) {
+        if (count > 0) plate.Add(x, y, c, recorded.At(x, y, c % 3));
+        plate.Add(x, y, plate.all_rays_channel() + c, all.At(x, y, c % 3));
       }
     }
   return plate;
@@ -135,13 +141,29 @@ TEST(Develop, AGuardedElementShowsAllRaysOnlyOutOfFocus) {
   const DevelopedFrame of_recorded = Develop(recorded, options, pool);
   const DevelopedFrame of_all = Develop(all, options, pool);
   EXPECT_TRUE(of_all.densified.empty());
-  for (const auto& [defocus, share] : {std::pair(0.0, 0.0), {0.1, 0.0}, {0.15, 0.5}, {0.2, 1.0}}) {
-    const DevelopedFrame frame = Develop(GuardedOf(recorded, all, defocus), options, pool);
+  EXPECT_TRUE(of_all.trust.empty());
+  struct Case {
+    double defocus, trust, share;
+  };
+  for (const auto& [defocus, trust, share] : {Case{0.0, 1, 0.0},
+                                              {0.1, 1, 0.0},
+                                              {0.15, 1, 0.5},
+                                              {0.2, 1, 1.0},
+                                              {1, 0.6, 1},
+                                              {1, 0.45, 0.5},
+                                              {0.15, 0.45, 0.25},
+                                              {0.15, 0.35, 0.5 * 2 / 27},
+                                              {1, 0.3, 0},
+                                              {1, 0, 0},
+                                              {0, 0, 0}}) {
+    const DevelopedFrame frame = Develop(GuardedOf(recorded, all, defocus, trust), options, pool);
     for (int y = 0; y < 37; ++y)
       for (int x = 0; x < 50; ++x) {
-        // Elements without recorded rays show all rays.
+        // Elements without recorded rays show all rays, even if these are not trusted.
         const double m = IsRecorded(x, y) ? share : 1;
         ASSERT_NEAR(frame.densified.at(x, y), m, 1e-6);
+        // Elements in focus show recorded rays, which are trusted.
+        ASSERT_NEAR(frame.trust.at(x, y), IsRecorded(x, y) && defocus <= 0.1 ? 1 : trust, 1e-6);
         for (int c = 0; c < 3; ++c) {
           const float r = of_recorded.rgb.at(x, y, c), v = of_all.rgb.at(x, y, c);
           if (m == 0) {
@@ -154,6 +176,40 @@ TEST(Develop, AGuardedElementShowsAllRaysOnlyOutOfFocus) {
         }
       }
   }
+}
+
+TEST(Develop, TheOpacityOfAGuardedElementIsMixedLikeItsColours) {
+  ThreadPool pool(2);
+  const SensorPlate recorded = RandomPlate(50, 37, 1, 6, 5), all = RandomPlate(50, 37, 1, 9, 8);
+  DevelopOptions options;
+  options.opaque = 60000;
+  options.scale = 60000;
+  options.smooth_below = 4;
+  for (const double defocus : {0.0, 0.13, 1.0})
+    for (const double trust : {0.0, 0.4, 1.0}) {
+      const SensorPlate plate =
+          GuardedOf(recorded, all, defocus, trust, PlateKind::kGuardedOpacity);
+      const DevelopedFrame frame = Develop(plate, options, pool);
+      const DevelopedFrame plain = Develop(GuardedOf(recorded, all, defocus, trust), options, pool);
+      EXPECT_EQ(frame.rgb.pixels(), plain.rgb.pixels());
+      EXPECT_EQ(frame.densified.pixels(), plain.densified.pixels());
+      EXPECT_EQ(frame.trust.pixels(), plain.trust.pixels());
+      for (int y = 0; y < 37; ++y)
+        for (int x = 0; x < 50; ++x)
+          ASSERT_NEAR(frame.opacity.at(x, y), std::clamp(frame.rgb.at(x, y), 0.F, 1.F), 1e-6F);
+    }
+}
+
+// Nothing of an element without any ray rests on virtual light.
+TEST(Develop, AnElementOfRecordedRaysAloneShowsThem) {
+  ThreadPool pool(1);
+  SensorPlate plate(2, 1, PlateKind::kGuarded);
+  for (int c = 0; c < 3; ++c) plate.Add(0, 0, c, {300, 1});
+  plate.Add(0, 0, plate.defocus_channel(), {65535, 1});
+  const DevelopedFrame frame = Develop(plate, {.scale = 1, .fill_radius_px = 0}, pool);
+  EXPECT_EQ(frame.rgb.at(0, 0), 300);
+  EXPECT_EQ(frame.densified.at(0, 0), 0);
+  for (int x = 0; x < 2; ++x) EXPECT_EQ(frame.trust.at(x, 0), 1);
 }
 
 TEST(Develop, AgreesWithTheFormulaForAnyDensity) {

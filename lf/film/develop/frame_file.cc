@@ -108,6 +108,7 @@ Result<void> WriteExrFrame(const std::filesystem::path& path, const DevelopedFra
     channels.push_back({"interpolated", frame.interpolated.view(), 0, as_half});
   if (!frame.densified.empty())
     channels.push_back({"densified", frame.densified.view(), 0, as_half});
+  if (!frame.trust.empty()) channels.push_back({"trust", frame.trust.view(), 0, as_half});
   // Depths are never half, which has only 11 significant bits.
   if (!frame.focus_depth_w.empty()) channels.push_back({"Z", frame.focus_depth_w.view(), 0, false});
   return WriteExr(path, channels, metadata, is_interrupted);

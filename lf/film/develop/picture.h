@@ -34,6 +34,15 @@ struct DevelopedFrame {
   // [height][width] share of each element that shows the rays of all LF images, virtual ones
   // included, instead of those of recorded LF images alone; empty unless the plate is guarded
   Image<float> densified = {};
+  // [height][width] mean trust in the rays of all LF images, from 0 to 1: recorded rays have 1,
+  // virtual ones what their LF images state (LfPixels::trust). It is 1 where the element is in
+  // focus and therefore shows recorded light, and where no ray was collected; empty unless the
+  // plate is guarded.
+  Image<float> trust = {};
+  // Number of elements that virtual light would blur, but that is not trusted: m > 1/2, but the
+  // trust is below the middle of kTrustFrom and kTrustTo (develop.h). They show recorded light if
+  // there is some.
+  uint64_t doubtful_count = 0;
   // [height][width] depth, along the optical axis, at which each element is in focus. Develop()
   // and RenderFrame() leave it empty; it is filled when a file with PictureOptions::has_focus_depth
   // is written.
@@ -44,8 +53,8 @@ struct DevelopedFrame {
 enum class FrameFormat {
   // "exr": an EXR file with the channels R G B count.R count.G count.B coverage. Opacities add A,
   // by which R G B are multiplied; lens weights add the channel effective, rebinned rays add
-  // interpolated, guarded plates add densified, and focus depths add Z. Counts are 32-bit integers,
-  // Z is float, and all other channels are half.
+  // interpolated, guarded plates add densified and trust, and focus depths add Z. Counts are 32-bit
+  // integers, Z is float, and all other channels are half.
   kExrHalf,
   kExrFloat,  // "exr-float": as "exr", with float instead of half
   kPng8,      // "png": sRGB, 8 bit; opacities add alpha, by which RGB is not multiplied

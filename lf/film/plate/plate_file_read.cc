@@ -49,8 +49,8 @@ Result<void> PlateReader::ReadHead() {
   const std::optional<PlateKind> kind = PlateKindOf(head.channels);
   if (head.width < 1 || head.width > kMaxSide || head.height < 1 || head.height > kMaxSide || !kind)
     return InputError(fmt::format(
-        "{}: states {} x {} elements with {} channels, expected 3, 4 or 7 channels, and width and "
-        "height from 1 to {}",
+        "{}: states {} x {} elements with {} channels, expected 3, 4, 8 or 10 channels, and width "
+        "and height from 1 to {}",
         source_->name(), head.width, head.height, head.channels, kMaxSide));
   const uint64_t most_rows = 1 + kChunkWords / (uint64_t{head.width} * head.channels);
   if (head.rows_per_chunk < 1 || head.rows_per_chunk > most_rows)

@@ -90,7 +90,8 @@ TEST_F(PlateFile, GivesBackEverySumAndCount) {
 
 TEST_F(PlateFile, GivesBackAllChannelsOfEachKindWideWordsIncluded) {
   ThreadPool pool(2);
-  for (const PlateKind kind : {PlateKind::kColours, PlateKind::kOpacity, PlateKind::kGuarded}) {
+  for (const PlateKind kind : {PlateKind::kColours, PlateKind::kOpacity, PlateKind::kGuarded,
+                               PlateKind::kGuardedOpacity}) {
     SensorPlate plate = testing::NoisePlateOf(kind, 317, 211, 7);
     plate.Add(316, 210, plate.channels() - 1, {uint64_t{61440} << 24, uint64_t{1} << 24});
     const fs::path path = folder_ / "a.plate";
@@ -170,9 +171,9 @@ TEST_F(PlateFile, WhatItSaysIsCheckedBeforeAnythingIsAllocated) {
   using plate_format::Head;
   const std::string bytes = BytesOf(testing::NoisePlate(20, 15, 7, SensorPlate::kMaxCount, true));
   ExpectError(WithHead(bytes, [](Head* head) { head->version = 7; }),
-              "version 7, but this program reads version 2: use the program that wrote it");
-  ExpectError(WithHead(bytes, [](Head* head) { head->version = 1; }),
-              "version 1, which builds of lfrendertools from before version 0.1.0 read, but");
+              "version 7, but this program reads version 3: use the program that wrote it");
+  ExpectError(WithHead(bytes, [](Head* head) { head->version = 2; }),
+              "version 2, which builds of lfrendertools from before version 0.1.0 read, but");
   ExpectError(WithHead(bytes, [](Head* head) { head->width = 0; }), "0 x 15");
   ExpectError(WithHead(bytes, [](Head* head) { head->height = 65537; }),
               "width and height from 1 to 65536");
@@ -180,6 +181,8 @@ TEST_F(PlateFile, WhatItSaysIsCheckedBeforeAnythingIsAllocated) {
               "20 x 65536");
   ExpectError(WithHead(bytes, [](Head* head) { head->width = 65536; }), "chunks of 1092 rows");
   ExpectError(WithHead(bytes, [](Head* head) { head->channels = 5; }), "5 channels");
+  ExpectError(WithHead(bytes, [](Head* head) { head->channels = 7; }),
+              "7 channels, expected 3, 4, 8 or 10 channels");
   ExpectError(WithHead(bytes, [](Head* head) { head->rows_per_chunk = 0; }), "chunks of 0 rows");
   ExpectError(WithHead(bytes, [](Head* head) { head->rows_per_chunk = 1u << 31; }), "rows");
   ExpectError(WithHead(bytes, [](Head* head) { head->wide_count = uint64_t{1} << 60; }),

@@ -12,7 +12,7 @@
 
 namespace lf::plate_format {
 
-inline constexpr entry_file::Kind kKind = {"LFPLATE\n", 2, "plate", "the plate cannot be used"};
+inline constexpr entry_file::Kind kKind = {"LFPLATE\n", 3, "plate", "the plate cannot be used"};
 
 // A plate's file begins with this head. The text of its entries follows, then the hash of both.
 struct Head {

@@ -12,7 +12,8 @@ ElementSum Unpack(uint64_t word) { return {word & SensorPlate::kSumMask, CountOf
 }  // namespace
 
 std::optional<PlateKind> PlateKindOf(uint32_t channels) {
-  for (const PlateKind kind : {PlateKind::kColours, PlateKind::kOpacity, PlateKind::kGuarded})
+  for (const PlateKind kind :
+       {PlateKind::kColours, PlateKind::kOpacity, PlateKind::kGuarded, PlateKind::kGuardedOpacity})
     if (static_cast<uint32_t>(kind) == channels) return kind;
   return std::nullopt;
 }

@@ -31,6 +31,8 @@ namespace lf {
 struct ElementSum {
   uint64_t sum = 0;    // sum of the rays' values v
   uint64_t count = 0;  // number of rays
+  // Mean of the rays' values; there must be a ray.
+  double Mean() const { return static_cast<double>(sum) / static_cast<double>(count); }
   friend bool operator==(const ElementSum&, const ElementSum&) = default;
 };
 
@@ -42,8 +44,11 @@ enum class PlateKind : uint8_t {
   kOpacity = 4,
   // The plate of a densified light field (doc/densify.md): R G B of the rays of recorded LF images,
   // then the defocus of the same rays in the values of opacities (1 is out of focus), then R G B of
-  // the rays of all LF images. Code that reads three colours reads those of recorded LF images.
-  kGuarded = 7,
+  // the rays of all LF images, and the trust in these rays in the values of opacities. Code that
+  // reads three colours reads those of recorded LF images.
+  kGuarded = 8,
+  // As kGuarded, but the opacity of the same rays follows R G B, both times.
+  kGuardedOpacity = 10,
 };
 // Returns the kind with this number of channels; nullopt if there is none.
 std::optional<PlateKind> PlateKindOf(uint32_t channels);
@@ -52,8 +57,6 @@ class SensorPlate {
  public:
   static constexpr int kChannels = 3;  // the colours R, G and B
   static constexpr int kOpacityChannel = 3;
-  static constexpr int kDefocusChannel = 3;
-  static constexpr int kAllRaysChannel = 4;  // R of the rays of all LF images
   static constexpr int kSumBits = 40;
   static constexpr uint64_t kOneRay = uint64_t{1} << kSumBits;
   static constexpr uint64_t kSumMask = kOneRay - 1;
@@ -72,8 +75,18 @@ class SensorPlate {
   int height() const { return height_; }
   PlateKind kind() const { return kind_; }
   int channels() const { return static_cast<int>(kind_); }
-  bool has_opacity() const { return kind_ == PlateKind::kOpacity; }
-  bool is_guarded() const { return kind_ == PlateKind::kGuarded; }
+  bool has_opacity() const {
+    return kind_ == PlateKind::kOpacity || kind_ == PlateKind::kGuardedOpacity;
+  }
+  bool is_guarded() const {
+    return kind_ == PlateKind::kGuarded || kind_ == PlateKind::kGuardedOpacity;
+  }
+  // Channels of a guarded plate: the defocus; R of the rays of all LF images; the opacity of these
+  // rays, if the plate has opacities; the trust in these rays.
+  int defocus_channel() const { return has_opacity() ? kOpacityChannel + 1 : kChannels; }
+  int all_rays_channel() const { return defocus_channel() + 1; }
+  int all_opacity_channel() const { return all_rays_channel() + kChannels; }
+  int trust_channel() const { return channels() - 1; }
   size_t size_bytes() const;
 
   // Returns sum and count of one element and channel, wherever they are stored.

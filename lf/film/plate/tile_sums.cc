@@ -16,12 +16,13 @@ void AddTo(ElementSum* total, const ElementSum& sum) {
 
 }  // namespace
 
-void TileSums::Begin(PlateTile* tile, std::span<const PlateElement> watched, Target target) {
+void TileSums::Begin(PlateTile* tile, std::span<const PlateElement> watched, const Target& target) {
   LF_CHECK(mosaic_limit_ <= tile->max_reserve());
   LF_CHECK(!has_rgb_ && !has_counted_ && !has_mosaic_);
-  LF_CHECK(target == Target::kColours || watched.empty());
-  LF_CHECK(target != Target::kFourth || tile->channels() > SensorPlate::kChannels);
-  LF_CHECK(target != Target::kAllRays || tile->channels() > SensorPlate::kAllRaysChannel);
+  LF_CHECK(target == Target() || watched.empty());
+  LF_CHECK(target.first >= 0 && target.count >= 1);
+  LF_CHECK(target.first + target.count <= SensorPlate::kChannels);
+  LF_CHECK(target.channel >= 0 && target.channel + target.count <= tile->channels());
   tile_ = tile;
   target_ = target;
   watched_ = watched;
@@ -84,7 +85,7 @@ void TileSums::MakeRgbRoom(uint32_t rays) {
 }
 
 void TileSums::MakeCountedRoom(uint32_t rays) {
-  LF_CHECK(rays <= ray_limit_ && target_ != Target::kFourth);
+  LF_CHECK(rays <= ray_limit_ && HasThree());
   FlushCounted();
   const size_t count = static_cast<size_t>(stride()) * rect().height();
   if (counted_.size() < count) counted_.resize(count);
@@ -93,7 +94,7 @@ void TileSums::MakeCountedRoom(uint32_t rays) {
 }
 
 void TileSums::MakeMosaicRoom(uint32_t rays) {
-  LF_CHECK(rays <= mosaic_limit_ && target_ == Target::kColours);
+  LF_CHECK(rays <= mosaic_limit_ && target_ == Target());
   FlushMosaic();
   const size_t count =
       static_cast<size_t>(stride()) * rect().height() * kMosaicRows + size_t{2} * kMargin;
@@ -112,15 +113,16 @@ void TileSums::FlushRgb() {
   if (!has_rgb_) return;
   KeepWatched([this](const PlateElement& element, int c) { return PendingRgb(element, c); });
   tile_->Reserve(ray_limit_ - rgb_headroom_);
-  if (target_ != Target::kFourth)
-    FlushRgbBy([first = FirstColour()](const Element& element, uint64_t rays, uint64_t* word) {
-      word[first + 0] += rays | element.rgb_rays[0];
-      word[first + 1] += rays | element.rgb_rays[1];
-      word[first + 2] += rays | element.rgb_rays[2];
+  if (HasThree())
+    FlushRgbBy([channel = target_.channel](const Element& element, uint64_t rays, uint64_t* word) {
+      word[channel + 0] += rays | element.rgb_rays[0];
+      word[channel + 1] += rays | element.rgb_rays[1];
+      word[channel + 2] += rays | element.rgb_rays[2];
     });
   else
-    FlushRgbBy([](const Element& element, uint64_t rays, uint64_t* word) {
-      word[SensorPlate::kOpacityChannel] += rays | element.rgb_rays[0];
+    FlushRgbBy([target = target_](const Element& element, uint64_t rays, uint64_t* word) {
+      for (int i = 0; i < target.count; ++i)
+        word[target.channel + i] += rays | element.rgb_rays[target.first + i];
     });
   has_rgb_ = false;
   rgb_headroom_ = 0;
@@ -153,7 +155,7 @@ void TileSums::FlushCounted() {
     for (int x = 0; x < rect().width(); ++x, ++element, word += tile_->channels()) {
       Prefetch(word + ahead);
       for (int c = 0; c < SensorPlate::kChannels; ++c)
-        word[FirstColour() + c] +=
+        word[target_.channel + c] +=
             uint64_t{element->counts[c]} << SensorPlate::kSumBits | element->rgb[c];
       *element = CountedElement{};
     }

@@ -58,21 +58,26 @@ class TileSums {
       : ray_limit_(ray_limit),
         mosaic_limit_(ray_limit == kMaxRays ? SensorPlate::kMaxCount : ray_limit) {}
 
-  // The channels of the plate that sums of RGB LF images go to.
-  enum class Target : uint8_t {
-    kColours,  // R, G and B are added to the three colours
-    kFourth,   // R is added to the fourth channel; opacities and defocus have R = G = B
-    kAllRays,  // R, G and B are added to the last three channels of a guarded plate
+  // The channels of the plate that sums go to: the sums of `count` colours, from the colour `first`
+  // on (0 is R), are added to as many channels, from `channel` on.
+  struct Target {
+    int channel = 0;
+    int first = 0;
+    int count = SensorPlate::kChannels;
+    friend bool operator==(const Target&, const Target&) = default;
   };
 
   // Makes `tile` the destination of everything that is added until Flush(). The sums of an earlier
   // tile must have been flushed.
   //   watched  elements of the tile whose sums Added() returns; must outlive the last call of
   //            Added() or Flush() for this tile
-  //   target   unless kColours, the plate must have the channels, and `watched` must be empty; if
-  //            kFourth, only ReserveRgb() may be called
-  void Begin(PlateTile* tile, std::span<const PlateElement> watched = {},
-             Target target = Target::kColours);
+  //   target   must have channels of the plate; unless they are the first three, `watched` must be
+  //            empty, and ReserveMosaic() must not be called; unless they are three, only
+  //            ReserveRgb() may be called
+  void Begin(PlateTile* tile, std::span<const PlateElement> watched, const Target& target);
+  void Begin(PlateTile* tile, std::span<const PlateElement> watched = {}) {
+    Begin(tile, watched, Target());
+  }
   const PixelRect& rect() const { return tile_->rect(); }
 
   // Number of words or elements from one row to the next. This is at least a cache line more than
@@ -119,8 +124,7 @@ class TileSums {
   void MakeCountedRoom(uint32_t rays);
   void MakeMosaicRoom(uint32_t rays);
   void FlushRgb();
-  // Returns the channel of the plate that R is added to, unless only R is.
-  int FirstColour() const { return target_ == Target::kAllRays ? SensorPlate::kAllRaysChannel : 0; }
+  bool HasThree() const { return target_.count == SensorPlate::kChannels; }
   template <class AddTo>
   void FlushRgbBy(const AddTo& add_to);
   void FlushCounted();
@@ -136,7 +140,7 @@ class TileSums {
   uint32_t ray_limit_;
   uint32_t mosaic_limit_;  // largest number of rays in a packed word
   PlateTile* tile_ = nullptr;
-  Target target_ = Target::kColours;
+  Target target_;
   bool has_rgb_ = false;
   bool has_counted_ = false;
   bool has_mosaic_ = false;

@@ -62,20 +62,32 @@ TEST(TileSums, MosaicsAndRgbReachThePlate) {
   }
 }
 
-TEST(TileSums, AllRaysReachTheLastChannelsOfAGuardedPlate) {
+TEST(TileSums, ColoursReachTheChannelsThatTheTargetNames) {
   SensorPlate plate(5, 4, PlateKind::kGuarded), expected(5, 4, PlateKind::kGuarded);
   PlateTile tile(&plate, {1, 1, 5, 4});
   TileSums sums(50);
-  sums.Begin(&tile, {}, TileSums::Target::kAllRays);
+  sums.Begin(&tile, {}, {.channel = plate.all_rays_channel()});
   sums.ReserveRgb(1)[sums.stride() + 2] = {{10, 20, 30, 1}};
   sums.ReserveCounted(8)[2 * sums.stride()] = {{70, 80, 90}, {7, 8, 1}};
   sums.Flush();
   for (int c = 0; c < 3; ++c) {
     const auto value = static_cast<uint64_t>(c);
-    expected.Add(3, 2, SensorPlate::kAllRaysChannel + c, {10 + 10 * value, 1});
-    expected.Add(1, 3, SensorPlate::kAllRaysChannel + c,
-                 {70 + 10 * value, std::array<uint64_t, 3>{7, 8, 1}[value]});
+    expected.Add(3, 2, 4 + c, {10 + 10 * value, 1});
+    expected.Add(1, 3, 4 + c, {70 + 10 * value, std::array<uint64_t, 3>{7, 8, 1}[value]});
   }
+  EXPECT_EQ(plate, expected);
+}
+
+TEST(TileSums, SomeColoursReachTheChannelsThatTheTargetNames) {
+  SensorPlate plate(5, 4, PlateKind::kGuardedOpacity);
+  SensorPlate expected(5, 4, PlateKind::kGuardedOpacity);
+  PlateTile tile(&plate, {1, 1, 5, 4});
+  TileSums sums(50);
+  sums.Begin(&tile, {}, {.channel = 8, .first = 1, .count = 2});
+  sums.ReserveRgb(2)[sums.stride() + 2] = {{10, 20, 30, 2}};
+  sums.Flush();
+  expected.Add(3, 2, 8, {20, 2});
+  expected.Add(3, 2, 9, {30, 2});
   EXPECT_EQ(plate, expected);
 }
 
@@ -84,7 +96,8 @@ TEST(TileSums, OpacityReachesTheFourthChannelAlone) {
   PlateTile tile(&plate, {2, 3, 22, 8});
   TileSums sums(50);  // so few rays that sums are flushed now and then
   for (const bool is_opacity : {false, true}) {
-    sums.Begin(&tile, {}, is_opacity ? TileSums::Target::kFourth : TileSums::Target::kColours);
+    sums.Begin(&tile, {},
+               is_opacity ? TileSums::Target{.channel = 3, .count = 1} : TileSums::Target());
     for (uint64_t ray = 0; ray < 300; ++ray) {
       const int x = static_cast<int>(RandomUnit(ray, 0, 0) * 20);
       const int y = static_cast<int>(RandomUnit(ray, 1, 0) * 5);

@@ -12,6 +12,7 @@
 
 #include "lf/core/log.h"
 #include "lf/render/collect/noise_rule.h"
+#include "lf/render/collect/opacity_and_trust.h"
 #include "lf/selection/overlap.h"
 
 namespace lf {
@@ -26,8 +27,8 @@ double SecondsSince(Clock::time_point start) {
 // An LF image of a batch while it is decoded.
 struct Loading {
   size_t index = 0;                                       // index of the LF image in State::order_
-  std::optional<Result<LfPixels>> pixels = std::nullopt;  // without opacity
-  LfPixels opacity = {};
+  std::optional<Result<LfPixels>> pixels = std::nullopt;  // without opacity and trust
+  LfPixels opacity = {};                                  // BatchImage::opacity
   NearbyDepths depths = {};
   PixelRect rect = {};  // of the pixels, before they were filtered
   std::optional<Prefilter> filtered_by = std::nullopt;
@@ -282,7 +283,8 @@ void FrameCollector::State::Load(const Batch& batch, Loading* loading) {
     LfPixels& pixels = **loading->pixels;
     loading->depths = NearbyDepthsOf(std::exchange(pixels.depths, {}));
     if (!loading->filtered_by) {
-      loading->opacity = pixels.TakeOpacity();
+      const bool is_guarded = !frames_.empty() && frames_.front().guard;
+      loading->opacity = is_guarded ? TakeOpacityAndTrust(&pixels) : pixels.TakeOpacity();
       loading->rect = pixels.rect;
     }
   }

@@ -31,6 +31,20 @@ class FrameGate {
   std::atomic<State> state_ = State::kUndecided;
 };
 
+// The channels of the plate that further rays of an LF image are added to. Opacities and defocus
+// have the same values in R, G and B, but TakeOpacityAndTrust() puts the trust into G.
+TileSums::Target OpacityTarget() { return {.channel = SensorPlate::kOpacityChannel, .count = 1}; }
+TileSums::Target DefocusTarget(const SensorPlate& plate) {
+  return {.channel = plate.defocus_channel(), .count = 1};
+}
+TileSums::Target AllRaysTarget(const SensorPlate& plate) {
+  return {.channel = plate.all_rays_channel()};
+}
+TileSums::Target TrustTarget(const SensorPlate& plate) {
+  if (plate.has_opacity()) return {.channel = plate.all_opacity_channel(), .count = 2};
+  return {.channel = plate.trust_channel(), .first = 1, .count = 1};
+}
+
 void Count(uint64_t tested, uint64_t accepted, bool is_virtual, FrameRays* rays) {
   if (accepted > 0) ++(is_virtual ? rays->virtual_count : rays->image_count);
   rays->tested_count += tested;
@@ -301,24 +315,29 @@ void BatchCollector::CollectTile(std::span<const BatchImage> batch, size_t taker
                       [&](size_t element, int c) { return sums.Added(element, c); });
   }
   sums.Flush();
-  if (frames_[frame].plate->kind() == PlateKind::kColours) return;
-  sums.Begin(&tile, {}, TileSums::Target::kFourth);
-  for (size_t k = 0; k < batch.size(); ++k)
-    for_each(k, 0, instant_count(), [&](const Contribution& contribution) {
-      AddToTile(contribution, number, *contribution.fourth, &sums);
-    });
-  sums.Flush();
+  // Adds the rays of the exposures [begin, end) to further channels.
+  const auto add = [&](const TileSums::Target& target, size_t begin, size_t end, const auto& body) {
+    sums.Begin(&tile, {}, target);
+    for (size_t k = 0; k < batch.size(); ++k) for_each(k, begin, end, body);
+    sums.Flush();
+  };
+  const auto add_opacity = [&](const Contribution& contribution) {
+    AddToTile(contribution, number, *contribution.opacity, &sums);
+  };
+  const SensorPlate& plate = *frames_[frame].plate;
+  if (plate.has_opacity()) add(OpacityTarget(), 0, instant_count(), add_opacity);
   if (!is_guarded()) return;
-  sums.Begin(&tile, {}, TileSums::Target::kAllRays);
-  for (size_t k = 0; k < batch.size(); ++k)
-    for_each(k, 1, 2, [&](Contribution& contribution) {
-      contribution.accepted_count += AddToTile(contribution, number, *contribution.pixels, &sums);
-    });
-  sums.Flush();
+  add(DefocusTarget(plate), 0, 1, [&](const Contribution& contribution) {
+    AddToTile(contribution, number, contribution.defocus, &sums);
+  });
+  add(AllRaysTarget(plate), 1, 2, [&](Contribution& contribution) {
+    contribution.accepted_count += AddToTile(contribution, number, *contribution.pixels, &sums);
+  });
+  add(TrustTarget(plate), 1, 2, add_opacity);
 }
 
 // Filters the LF images of the batch for the planned contributions to `frame_count` frames, and
-// sets the pixels and the fourth channel of these contributions.
+// sets the pixels and the opacities of these contributions.
 void BatchCollector::FilterImages(std::vector<BatchImage>& batch, size_t frame_count,
                                   bool keep_pixels) {
   std::vector<std::vector<Prefilter>> filters(batch.size());
@@ -333,8 +352,7 @@ void BatchCollector::FilterImages(std::vector<BatchImage>& batch, size_t frame_c
                     [&](size_t count, const auto& body) { ForEachTimed(count, body); });
   for_each_planned([&](size_t k, Contribution& contribution) {
     contribution.pixels = &filtered_->Pixels(batch, k, PrefilterOf(contribution));
-    contribution.fourth = is_guarded() ? &contribution.defocus
-                                       : &filtered_->Opacity(batch, k, PrefilterOf(contribution));
+    contribution.opacity = &filtered_->Opacity(batch, k, PrefilterOf(contribution));
   });
 }
 
@@ -356,9 +374,12 @@ void BatchCollector::AddByReference(const std::vector<BatchImage>& batch, BatchF
   tally.Start(total_of);
   for (const BatchImage& image : batch) {
     if (!frame->ranks.Holds(image.rank)) continue;
-    if (is_guarded() && AddChannelsByReference(image, image.Pixels(), ExposureOf(frame->frame, 1),
-                                               3, SensorPlate::kAllRaysChannel, &plate) > 0)
-      frame->rays.virtual_count += IsVirtual(image.id) ? 1 : 0;
+    if (is_guarded()) {
+      const Exposure all = ExposureOf(frame->frame, 1);
+      if (AddChannelsByReference(image, image.Pixels(), all, AllRaysTarget(plate), &plate) > 0)
+        frame->rays.virtual_count += IsVirtual(image.id) ? 1 : 0;
+      AddChannelsByReference(image, image.Opacity(), all, TrustTarget(plate), &plate);
+    }
     uint64_t tested = 0, accepted = 0;
     for (size_t e = 0; e < instant_count(); ++e) {
       const Exposure exposure = ExposureOf(frame->frame, e);
@@ -367,11 +388,10 @@ void BatchCollector::AddByReference(const std::vector<BatchImage>& batch, BatchF
       tested += static_cast<uint64_t>(rect.pixel_count());
       accepted += CollectByReference(image, image.Pixels(), exposure, &plate);
       if (plate.has_opacity())
-        AddChannelsByReference(image, image.Opacity(), exposure, 1, SensorPlate::kOpacityChannel,
-                               &plate);
+        AddChannelsByReference(image, image.Opacity(), exposure, OpacityTarget(), &plate);
       if (is_guarded())
-        AddChannelsByReference(image, DefocusIn(frame->frame, image, {}), exposure, 1,
-                               SensorPlate::kDefocusChannel, &plate);
+        AddChannelsByReference(image, DefocusIn(frame->frame, image, {}), exposure,
+                               DefocusTarget(plate), &plate);
     }
     tally.TakeImage(IsVirtual(image.id), total_of);
     Count(tested, accepted, IsVirtual(image.id), &frame->rays);
@@ -391,16 +411,18 @@ uint64_t BatchCollector::CollectByReference(const BatchImage& image, const LfPix
              : ScatterReference(lf_camera, pixels, exposure.camera, rect, plate, weights);
 }
 
-// Collects the pixels on a separate plate, and adds the first `count` channels of that plate to the
-// channels from `first` on of `plate`. Returns the number of rays.
+// Collects the pixels on a separate plate, and adds channels of that plate to `plate` as `target`
+// says. Returns the number of rays.
 uint64_t BatchCollector::AddChannelsByReference(const BatchImage& image, const LfPixels& pixels,
-                                                const Exposure& exposure, int count, int first,
+                                                const Exposure& exposure,
+                                                const TileSums::Target& target,
                                                 SensorPlate* plate) const {
   SensorPlate separate(plate->width(), plate->height());
   const uint64_t accepted = CollectByReference(image, pixels, exposure, &separate);
   for (int y = 0; y < plate->height(); ++y)
     for (int x = 0; x < plate->width(); ++x)
-      for (int c = 0; c < count; ++c) plate->Add(x, y, first + c, separate.At(x, y, c));
+      for (int i = 0; i < target.count; ++i)
+        plate->Add(x, y, target.channel + i, separate.At(x, y, target.first + i));
   return accepted;
 }
 

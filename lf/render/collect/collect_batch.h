@@ -37,7 +37,9 @@ struct BatchImage {
   LfImageId id;
   uint32_t rank = 0;  // rank of the LF image in the order
   LfPixels pixels;
-  // opacity of these pixels (LfPixels::TakeOpacity()); only used by plates with opacity
+  // Only used by plates with opacity or a guard: the opacity of these pixels
+  // (LfPixels::TakeOpacity()), or their opacity and trust (TakeOpacityAndTrust()) if the plates
+  // have a guard.
   LfPixels opacity = {};
   NearbyDepths depths = {};  // of a recorded LF image; only used by guarded plates
   // Pixels and their opacity that others own and may read at the same time, instead of `pixels` and
@@ -138,8 +140,8 @@ class BatchCollector {
     RayWeights weights;
     // The pixels of the LF image, filtered if `gather` needs it. filtered_ or the batch owns them.
     const LfPixels* pixels = nullptr;
-    // The values of the plate's fourth channel: the opacity, filtered likewise, or `defocus`.
-    const LfPixels* fourth = nullptr;
+    // BatchImage::Opacity(), filtered likewise; empty if the plate has neither opacity nor a guard.
+    const LfPixels* opacity = nullptr;
     LfPixels defocus;  // memory of spare_defocus_, while the contribution is collected
     std::atomic<uint64_t> accepted_count = 0;
   };
@@ -184,7 +186,7 @@ class BatchCollector {
   uint64_t CollectByReference(const BatchImage& image, const LfPixels& pixels,
                               const Exposure& exposure, SensorPlate* plate) const;
   uint64_t AddChannelsByReference(const BatchImage& image, const LfPixels& pixels,
-                                  const Exposure& exposure, int count, int first,
+                                  const Exposure& exposure, const TileSums::Target& target,
                                   SensorPlate* plate) const;
   // Returns the defocus of the LF image in a guarded frame, not filtered.
   LfPixels DefocusIn(size_t frame, const BatchImage& image, LfPixels memory) const;

@@ -30,8 +30,8 @@ struct FrameProgress {
   FrameRays rays;  // counts of the rays that this FrameCollector tested and added
 };
 
-// The rays of all LF images, which a frame with a guarded plate (PlateKind::kGuarded) collects
-// besides those of recorded LF images (doc/densify.md, "The guard").
+// The rays of all LF images, and their trust, which a frame with a guarded plate collects besides
+// the rays of recorded LF images (PlateKind::kGuarded; doc/densify.md, "The guard").
 struct FrameGuard {
   RenderCamera camera;   // with the lens of all LF cameras
   ImageWeights weights;  // of all LF images in this lens
@@ -71,7 +71,7 @@ struct CollectedFrame {
 
 // Returns the kind of the plates of a light field.
 inline PlateKind PlateKindOf(const RadianceEncoding& encoding, bool is_guarded) {
-  if (is_guarded) return PlateKind::kGuarded;
+  if (is_guarded) return encoding.HasOpacity() ? PlateKind::kGuardedOpacity : PlateKind::kGuarded;
   return encoding.HasOpacity() ? PlateKind::kOpacity : PlateKind::kColours;
 }
 

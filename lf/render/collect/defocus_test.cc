@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -127,13 +129,34 @@ TEST(Defocus, IsNoneOnATiltedFocusPlane) {
   }
 }
 
-// Two of three LF images are virtual. The recorded ones have depths of noise.
+// Two of three LF images are virtual, and have trust of noise. The recorded ones have depths of
+// noise. Some pixels are masked.
 class DepthStore : public testing::NoiseStore {
  public:
-  explicit DepthStore(const LightField& field) : field_(field) {}
+  explicit DepthStore(const LightField& field, bool has_opacity = false)
+      : field_(field), has_opacity_(has_opacity) {}
   Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override {
     LF_RETURN_IF_ERROR(NoiseStore::Load(id, rect, pixels));
-    if (field_.cameras[id.value].is_virtual) return {};
+    const auto noise = [&](uint64_t seed, int x, int y) {
+      return RandomBits(seed, id.value,
+                        static_cast<uint64_t>((y + rect.y_begin) * 1000 + x + rect.x_begin));
+    };
+    if (has_opacity_) pixels->opacity = Image<uint16_t>(rect.width(), rect.height(), 4, 1);
+    for (int y = 0; y < rect.height(); ++y)
+      for (int x = 0; x < rect.width(); ++x) {
+        for (int c = 0; has_opacity_ && c < 3; ++c)
+          pixels->opacity.at(x, y, c) =
+              static_cast<uint16_t>(LfPixels::kTransparent +
+                                    noise(6, x, y) % (LfPixels::kOpaque - LfPixels::kTransparent));
+        if (noise(7, x, y) % 50 == 0) pixels->Mask(x, y);
+      }
+    if (field_.cameras[id.value].is_virtual) {
+      pixels->trust = Image<uint8_t>(rect.width(), rect.height());
+      for (int y = 0; y < rect.height(); ++y)
+        for (int x = 0; x < rect.width(); ++x)
+          pixels->trust.at(x, y) = static_cast<uint8_t>(noise(8, x, y));
+      return {};
+    }
     pixels->depths = {Image<uint16_t>(testing::kWidth, testing::kHeight), kLeastDepth,
                       kGreatestDepth, 1};
     for (size_t i = 0; i < pixels->depths.numbers.pixels().size(); ++i)
@@ -144,6 +167,29 @@ class DepthStore : public testing::NoiseStore {
 
  private:
   const LightField& field_;
+  const bool has_opacity_;
+};
+
+// Shows the opacity or the trust in place of the colours.
+class ShownStore : public DepthStore {
+ public:
+  ShownStore(const LightField& field, bool shows_trust)
+      : DepthStore(field, true), shows_trust_(shows_trust) {}
+  Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override {
+    LF_RETURN_IF_ERROR(DepthStore::Load(id, rect, pixels));
+    for (int y = 0; y < rect.height(); ++y)
+      for (int x = 0; x < rect.width(); ++x) {
+        if (pixels->IsMasked(x, y)) continue;
+        const double trust = pixels->trust.empty() ? 1 : pixels->trust.at(x, y) / 255.0;
+        const auto value = static_cast<uint16_t>(std::lround(16384 + trust * 32768));
+        for (int c = 0; c < 3; ++c)
+          pixels->radiance.at(x, y, c) = shows_trust_ ? value : pixels->opacity.at(x, y, c);
+      }
+    return {};
+  }
+
+ private:
+  const bool shows_trust_;
 };
 
 // Shows the defocus of frame 0 in place of the colours.
@@ -163,7 +209,8 @@ class DefocusStore : public DepthStore {
 };
 
 struct GuardTest {
-  GuardTest() {
+  explicit GuardTest(double focal_px = 80) {
+    frame.pinhole.intrinsics.fx_px = frame.pinhole.intrinsics.fy_px = focal_px;
     for (uint32_t i = 0; i < field.size(); ++i) field.cameras[i].is_virtual = i % 3 != 0;
     images = SelectImages(ImageIndex(field, 3), {&frame, 1}, {.reach = PixelReach::kElement}, pool);
   }
@@ -203,6 +250,44 @@ struct GuardTest {
   CollectOptions options;
 };
 
+// Runs body(test, kind) for both kinds of guarded plates, both back ends, and readings with and
+// without a prefilter.
+void ForEachReading(const std::function<void(GuardTest* test, PlateKind kind)>& body) {
+  for (const PlateKind kind : {PlateKind::kGuarded, PlateKind::kGuardedOpacity})
+    for (const CollectBackEnd back_end : {CollectBackEnd::kFast, CollectBackEnd::kReference})
+      for (const Estimator estimator : {Estimator::kNearest, Estimator::kBilinear})
+        for (const PixelFilter filter : {PixelFilter::kBilinear, PixelFilter::kPrefiltered}) {
+          // Elements of the second frame are twice as large as LF pixels.
+          GuardTest test(filter == PixelFilter::kBilinear ? 80 : 35);
+          test.options.reading.estimator = estimator;
+          test.options.reading.filter = filter;
+          test.options.back_end = back_end;
+          test.options.batch_image_count = 5;
+          body(&test, kind);
+        }
+}
+
+TEST(GuardedPlate, HoldsTheOpacityAndTheTrustOfItsRays) {
+  ForEachReading([](GuardTest* test, PlateKind kind) {
+    SensorPlate plate(80, 60, kind);
+    const DepthStore store(test->field, plate.has_opacity());
+    ASSERT_TRUE(Collect(test->field, store, test->Guarded(&plate), test->images, test->options,
+                        test->pool, {}));
+    const SensorPlate trust = test->PlateOf(ShownStore(test->field, true), false);
+    const SensorPlate all = test->PlateOf(ShownStore(test->field, false), false);
+    const SensorPlate recorded = test->PlateOf(ShownStore(test->field, false), true);
+    for (int y = 0; y < 60; ++y)
+      for (int x = 0; x < 80; ++x) {
+        ASSERT_EQ(plate.At(x, y, plate.trust_channel()), trust.At(x, y, 0));
+        ASSERT_EQ(plate.At(x, y, plate.trust_channel()).count,
+                  plate.At(x, y, plate.all_rays_channel()).count);
+        if (!plate.has_opacity()) continue;
+        ASSERT_EQ(plate.At(x, y, SensorPlate::kOpacityChannel), recorded.At(x, y, 0));
+        ASSERT_EQ(plate.At(x, y, plate.all_opacity_channel()), all.At(x, y, 0));
+      }
+  });
+}
+
 TEST(GuardedPlate, HoldsTheRecordedRaysTheirDefocusAndAllRays) {
   for (const Estimator estimator : {Estimator::kNearest, Estimator::kBilinear})
     for (const CollectBackEnd back_end : {CollectBackEnd::kFast, CollectBackEnd::kReference}) {
@@ -221,11 +306,11 @@ TEST(GuardedPlate, HoldsTheRecordedRaysTheirDefocusAndAllRays) {
       uint64_t sum = 0;
       for (int y = 0; y < 60; ++y)
         for (int x = 0; x < 80; ++x) {
-          ASSERT_EQ(plate.At(x, y, SensorPlate::kDefocusChannel), defocus.At(x, y, 0));
+          ASSERT_EQ(plate.At(x, y, plate.defocus_channel()), defocus.At(x, y, 0));
           sum += defocus.At(x, y, 0).count;
           for (int c = 0; c < 3; ++c) {
             ASSERT_EQ(plate.At(x, y, c), recorded.At(x, y, c));
-            ASSERT_EQ(plate.At(x, y, SensorPlate::kAllRaysChannel + c), all.At(x, y, c));
+            ASSERT_EQ(plate.At(x, y, plate.all_rays_channel() + c), all.At(x, y, c));
           }
         }
       EXPECT_GT(sum, 1000u);

@@ -25,8 +25,9 @@ constexpr size_t kDevelopBytesPerElement = 64;
 // Additional memory to develop a frame with opacity, for each element: opacity, its counts and
 // tables.
 constexpr size_t kOpacityBytes = 16;
-// Additional memory to develop a guarded frame, for each element: the channel `densified`.
-constexpr size_t kGuardBytes = 4;
+// Additional memory to develop a guarded frame, for each element: the channels `densified` and
+// `trust`.
+constexpr size_t kGuardBytes = 8;
 constexpr size_t kSheetBytesPerElement = 3;  // 8-bit RGB picture of the contact sheet
 constexpr size_t kMostSheetPictures = 12;
 
@@ -53,7 +54,7 @@ constexpr size_t kMostPlanBytes = 64 * kMiB;
 // Memory that the largest LF image needs.
 struct ImageNeed {
   size_t pixels = 1;
-  size_t kept_bytes = 1;    // its radiance, mask, opacity and ideal pixels
+  size_t kept_bytes = 1;    // its radiance, mask, opacity or trust, and ideal pixels
   size_t decode_bytes = 1;  // memory to decode it, in one thread
   // The plan of its rays in one frame, with their defocus if the plate is guarded.
   size_t plan_bytes = 1;
@@ -68,14 +69,17 @@ ImageNeed NeedOf(const LightField& light_field, Estimator estimator, int plate_w
                                             ? kDecodeFloatBytesPerPixel
                                             : kDecodeBytesPerPixel;
   constexpr size_t kNearbyDepthsBytes = 2 * sizeof(uint16_t);
+  constexpr size_t kTrustBytes = sizeof(uint8_t);
   constexpr size_t kPatchBytesPerPixel = 1;  // table of ideal pixels (camera/ideal_pixels.h)
   ImageNeed need;
   for (const Intrinsics& k : light_field.intrinsics) {
     const size_t pixels = static_cast<size_t>(k.width_px) * k.height_px;
     const size_t bytes_per_pixel =
         (is_rgb ? LfPixels::kRgbLanes * sizeof(uint16_t) : sizeof(uint16_t) + 1) +
-        (light_field.encoding.HasOpacity() ? LfPixels::kRgbLanes * sizeof(uint16_t) : 0) +
-        (k.has_distortion() ? kPatchBytesPerPixel : 0) + (is_guarded ? kNearbyDepthsBytes : 0);
+        (light_field.encoding.HasOpacity() || is_guarded ? LfPixels::kRgbLanes * sizeof(uint16_t)
+                                                         : 0) +
+        (k.has_distortion() ? kPatchBytesPerPixel : 0) +
+        (is_guarded ? kNearbyDepthsBytes + kTrustBytes : 0);
     need.pixels = std::max(need.pixels, pixels);
     need.kept_bytes = std::max(need.kept_bytes, pixels * bytes_per_pixel);
     need.decode_bytes = std::max(need.decode_bytes, pixels * decode_bytes_per_pixel);

@@ -37,7 +37,7 @@ struct MemoryPlan {
 // suffices. If LF images are prefiltered, the memory of one batch also holds a filtered copy of
 // each of its LF images.
 //   bytes_per_frame  further memory for each frame, such as its moments (noise_moments.h)
-//   is_guarded       true: the plates are guarded (PlateKind::kGuarded)
+//   is_guarded       true: the plates are guarded (SensorPlate::is_guarded())
 //   instants         number of lenses of each frame (CameraPath::Instants()), which have plans of
 //                    their own and lens weights. With prefilters, there is memory for a
 //                    second filtered copy of each LF image, because elements may become wider than

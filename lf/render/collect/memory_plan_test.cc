@@ -66,15 +66,21 @@ TEST(MemoryPlan, LargeImagesAndManyThreadsCount) {
   EXPECT_GE(many.plan_bytes, many.batch_image_count * size_t{4000} * 6000 / 256 * 32);
 }
 
-// A guarded plate has seven channels instead of three, and the defocus of LF pixels is planned.
+// A guarded plate has eight channels instead of three, or ten instead of four. The defocus of LF
+// pixels is planned, and LF images are kept with their trust.
 TEST(MemoryPlan, GuardedFramesNeedMoreMemory) {
-  const LightField field = Field(960, 640);
+  LightField field = Field(960, 640);
   const auto plan = [&](bool is_guarded) {
     return *PlanMemory(2048 * kMiB, field, Estimator::kBilinear, 1920, 1080, 900, 2, 0, is_guarded);
   };
-  EXPECT_EQ(plan(true).plate_bytes, plan(false).plate_bytes / 3 * 7);
+  EXPECT_EQ(plan(true).plate_bytes, plan(false).plate_bytes / 3 * 8);
+  EXPECT_GE(plan(true).image_bytes, plan(false).image_bytes + 960 * 640 * 8);
   EXPECT_LT(plan(true).frames_per_pass * 2, plan(false).frames_per_pass);
   EXPECT_GE(plan(true).plan_bytes, plan(true).batch_image_count * 960 * 640 * 8);
+  field.encoding.alpha = AlphaMeaning::kStraight;
+  field.encoding.keeps_opacity = true;
+  ASSERT_TRUE(field.encoding.HasOpacity());
+  EXPECT_EQ(plan(true).plate_bytes, plan(false).plate_bytes / 4 * 10);
 }
 
 TEST(MemoryPlan, NamesTheLeastMemoryThatIsEnough) {

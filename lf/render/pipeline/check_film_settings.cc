@@ -126,13 +126,7 @@ Result<void> CheckGuard(const Package& package, const FilmSettings& film) {
         "{{mode {}}}: the light field is densified, and rebinned rays cannot be guarded: use "
         "{{mode collect}}, or {}",
         NameOf(film.mode), kRemedy));
-  const RadianceEncoding& encoding = package.light_field.encoding;
-  if (encoding.HasOpacity())
-    return UsageError(fmt::format(
-        "the light field is densified, and frames with alpha cannot be guarded: composite the LF "
-        "images over a background with {{background}}, or {}",
-        kRemedy));
-  if (encoding.bayer != BayerPattern::kNone)
+  if (package.light_field.encoding.bayer != BayerPattern::kNone)
     return UsageError(fmt::format(
         "the light field is densified, and frames of mosaics cannot be guarded: {}", kRemedy));
   if (!package.choices.has_neighbours)

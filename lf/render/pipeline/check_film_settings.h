@@ -19,7 +19,7 @@ namespace lf {
 // Returns kUsage if the options are not compatible; if the lens of a frame is a pinhole but lens
 // weights by area need its area; if the path has a shutter but the mode is not kCollect; or if the
 // light field is densified but its frames cannot be guarded, because they have rebinned rays, the
-// path has a shutter, LF images have opacities or mosaics, or the package lacks the LF cameras
+// path has a shutter, LF images are mosaics, or the package lacks the LF cameras
 // beside the lens.
 Result<void> CheckFilmSettings(const Package& package, const FilmSettings& options,
                                const std::vector<FrameId>& frames);

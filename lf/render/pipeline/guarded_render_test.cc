@@ -2,6 +2,7 @@
 // Frames of a densified light field: never worse than those of its recorded LF images alone.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <memory>
@@ -21,7 +22,7 @@
 namespace lf {
 namespace {
 
-// A packed store of noise, of whose LF images two of three are virtual.
+// A packed store of noise, of whose LF images two of three are virtual; with noise as alpha or not.
 class GuardedRenderTest : public FolderTest {
  protected:
   void SetUp() override {
@@ -31,17 +32,30 @@ class GuardedRenderTest : public FolderTest {
     for (uint32_t i = 0; i < field_.size(); ++i) {
       field_.image_names[i] += ".png";
       field_.cameras[i].is_virtual = i % 3 != 0;
-      Image<uint8_t> image(testing::kWidth, testing::kHeight, 3);
+    }
+    WriteImages(3);
+    film_.cameras = testing::NoiseFrames();
+    work_.memory_bytes = size_t{1} << 30;
+  }
+  void WriteImages(int channels) {
+    for (uint32_t i = 0; i < field_.size(); ++i) {
+      Image<uint8_t> image(testing::kWidth, testing::kHeight, channels);
       for (size_t k = 0; k < image.pixels().size(); ++k)
         image.pixels()[k] = static_cast<uint8_t>(RandomBits(7, i, k));
       ASSERT_TRUE(WriteImage(field_.ImagePath({i}), image.view()));
     }
-    film_.cameras = testing::NoiseFrames();
-    work_.memory_bytes = size_t{1} << 30;
+  }
+  void UseAlpha() {
+    WriteImages(4);
+    field_.encoding.alpha = AlphaMeaning::kStraight;
+    field_.encoding.background.emplace();
+    field_.encoding.keeps_opacity = true;
   }
   // Writes the store. number_of(id, k) returns number k of the plane of a recorded LF image, which
-  // stands for the inverse depth number / 1000.
-  LightField Densified(const std::function<uint16_t(uint32_t id, size_t k)>& number_of) {
+  // stands for the inverse depth number / 1000. trust_of(id, k) returns the trust in pixel k of a
+  // virtual one; null: the store has no trust.
+  LightField Densified(const std::function<uint16_t(uint32_t id, size_t k)>& number_of,
+                       const std::function<uint8_t(uint32_t id, size_t k)>& trust_of = nullptr) {
     const std::filesystem::path path = folder_ / "dense.lfs";
     PackedStorePlan plan;
     plan.densified = DensifiedPlan{"settings", 0.001, 65.535, 1};
@@ -49,7 +63,13 @@ class GuardedRenderTest : public FolderTest {
     for (uint32_t i = 0; i < field_.size(); ++i) {
       const auto image = ReadRecordedImage(field_, {i}, {0, 0, testing::kWidth, testing::kHeight});
       EXPECT_TRUE(writer.Add({i}, CodeOf(*image, {.profile = CodecProfile::kLossless})));
-      if (field_.cameras[i].is_virtual) continue;
+      if (field_.cameras[i].is_virtual) {
+        if (!trust_of) continue;
+        Image<uint8_t> trust(testing::kWidth, testing::kHeight);
+        for (size_t k = 0; k < trust.pixels().size(); ++k) trust.pixels()[k] = trust_of(i, k);
+        EXPECT_TRUE(writer.AddTrust({i}, trust));
+        continue;
+      }
       Image<uint16_t> plane(testing::kWidth, testing::kHeight);
       for (size_t k = 0; k < plane.pixels().size(); ++k) plane.pixels()[k] = number_of(i, k);
       EXPECT_TRUE(writer.AddPlane({i}, PlaneKind::kDisparity, plane));
@@ -57,11 +77,14 @@ class GuardedRenderTest : public FolderTest {
     EXPECT_TRUE(writer.Finish());
     return ReadPackedStore(path).value().light_field;
   }
-  // Depths of noise, some of them unknown, so that elements are in focus in part.
+  // Depths of noise, some of them unknown, so that elements are in focus in part. Trust of noise,
+  // so that elements are trusted in part.
   LightField WithNoiseDepths() {
-    return Densified([](uint32_t id, size_t k) {
-      return static_cast<uint16_t>(k / 64 % 16 < 8 ? 500 : RandomBits(9, id, k) % 4000);
-    });
+    return Densified(
+        [](uint32_t id, size_t k) {
+          return static_cast<uint16_t>(k / 64 % 16 < 8 ? 500 : RandomBits(9, id, k) % 4000);
+        },
+        [](uint32_t id, size_t k) { return static_cast<uint8_t>(RandomBits(10, id, k)); });
   }
   LightField Recorded() const {
     LightField recorded = field_;
@@ -108,25 +131,30 @@ class GuardedRenderTest : public FolderTest {
   ThreadPool pool_{2};
 };
 
-// Compares the first `channels` of two plates, from the channels `a_first` and `b_first` on.
-void ExpectSameChannels(const SensorPlate& a, int a_first, const SensorPlate& b, int b_first) {
+// Compares all channels of b with those of a from `a_first` on.
+void ExpectHasChannels(const SensorPlate& a, int a_first, const SensorPlate& b) {
   for (int y = 0; y < a.height(); ++y)
     for (int x = 0; x < a.width(); ++x)
-      for (int c = 0; c < 3; ++c)
-        ASSERT_EQ(a.At(x, y, a_first + c), b.At(x, y, b_first + c)) << x << " " << y << " " << c;
+      for (int c = 0; c < b.channels(); ++c)
+        ASSERT_EQ(a.At(x, y, a_first + c), b.At(x, y, c)) << x << " " << y << " " << c;
 }
 
 TEST_F(GuardedRenderTest, PlatesHoldTheFilmBeforeAndAfterDensifying) {
-  const LightField densified = WithNoiseDepths();
+  LightField densified = WithNoiseDepths();
   for (const LensWeights weights : {LensWeights::kNone, LensWeights::kAuto, LensWeights::kHat}) {
     options_.lens_weights = weights;
+    if (weights == LensWeights::kHat) {
+      UseAlpha();
+      densified = WithNoiseDepths();
+    }
     const auto guarded = Rendered(densified), all = Rendered(densified, false);
     const auto before = Rendered(Recorded());
     for (size_t f = 0; f < 3; ++f) {
       ASSERT_TRUE(guarded->plate(f).is_guarded());
       EXPECT_FALSE(all->plate(f).is_guarded());
-      ExpectSameChannels(guarded->plate(f), 0, before->plate(f), 0);
-      ExpectSameChannels(guarded->plate(f), SensorPlate::kAllRaysChannel, all->plate(f), 0);
+      EXPECT_EQ(guarded->plate(f).has_opacity(), densified.encoding.HasOpacity());
+      ExpectHasChannels(guarded->plate(f), 0, before->plate(f));
+      ExpectHasChannels(guarded->plate(f), guarded->plate(f).all_rays_channel(), all->plate(f));
       const FrameRays rays = guarded->Progress(f).rays;
       EXPECT_EQ(rays.image_count, before->Progress(f).rays.image_count);
       EXPECT_EQ(rays.accepted_count, before->Progress(f).rays.accepted_count);
@@ -167,7 +195,60 @@ TEST_F(GuardedRenderTest, FarOutOfFocusOrAtUnknownDepthsItIsThatOfAll) {
   }
 }
 
+// The trust, E, R and V of the plate give the picture by the formula of doc/densify.md.
+TEST_F(GuardedRenderTest, VirtualLightIsShownAsFarAsItIsTrusted) {
+  UseAlpha();
+  const auto guarded =
+      Rendered(Densified([](uint32_t, size_t) { return uint16_t{20000}; },
+                         [](uint32_t, size_t k) { return static_cast<uint8_t>(k % 64 * 3); }));
+  const SensorPlate& plate = guarded->plate(0);
+  const RenderedFrame rendered = guarded->Develop(0);
+  const DevelopedFrame& picture = rendered.picture;
+  const auto mean = [&](int x, int y, int channel) {
+    return (plate.At(x, y, channel).Mean() - 16384) / 32768;
+  };
+  size_t recorded = 0, mixed = 0, doubtful = 0, seen = 0;
+  double densified = 0;
+  for (int y = 0; y < plate.height(); ++y)
+    for (int x = 0; x < plate.width(); ++x) {
+      if (plate.At(x, y, 9).count == 0) continue;
+      ++seen;
+      const double trust = mean(x, y, 9);
+      ASSERT_NEAR(picture.trust.at(x, y), trust, 1e-6);
+      const double s = std::clamp((trust - 0.3) / 0.3, 0.0, 1.0);
+      const bool is_recorded = plate.At(x, y, 4).count > 0;
+      const double t = is_recorded ? s * s * (3 - 2 * s) : 1;
+      densified += t;
+      doubtful += trust < 0.45 ? 1 : 0;
+      ASSERT_NEAR(picture.densified.at(x, y), t, 1e-5);
+      recorded += t < 0.1 ? 1 : 0;
+      mixed += t > 0.4 && t < 0.6 ? 1 : 0;
+      const double all = mean(x, y, 8), opacity = is_recorded ? mean(x, y, 3) : all;
+      ASSERT_NEAR(picture.opacity.at(x, y), std::clamp(opacity + t * (all - opacity), 0.0, 1.0),
+                  1e-5);
+    }
+  EXPECT_GT(recorded, 50u);
+  EXPECT_GT(mixed, 50u);
+  EXPECT_GT(seen, recorded + mixed + 100);
+  const auto count = static_cast<double>(seen);
+  ASSERT_TRUE(rendered.report.virtual_light);
+  EXPECT_NEAR(rendered.report.virtual_light->densified_share, densified / count, 1e-5);
+  EXPECT_NEAR(rendered.report.virtual_light->doubtful_share, static_cast<double>(doubtful) / count,
+              1e-9);
+}
+
+// Stores of earlier builds have no trust.
+TEST_F(GuardedRenderTest, AStoreWithoutTrustIsTrusted) {
+  const auto number = [](uint32_t id, size_t k) {
+    return static_cast<uint16_t>(RandomBits(9, id, k) % 4000);
+  };
+  const auto trusted = Rendered(Densified(number, [](uint32_t, size_t) { return uint8_t{255}; }));
+  const auto without = Rendered(Densified(number));
+  for (size_t f = 0; f < 3; ++f) EXPECT_EQ(without->plate(f), trusted->plate(f));
+}
+
 TEST_F(GuardedRenderTest, ShardsPassesAndThreadsGiveTheSameBits) {
+  UseAlpha();
   const LightField densified = WithNoiseDepths();
   const auto whole = Frames("whole", densified, [](RenderOptions*) {});
   ASSERT_EQ(whole.size(), 3u);

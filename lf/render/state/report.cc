@@ -14,10 +14,29 @@
 namespace lf {
 namespace {
 
+VirtualLight VirtualLightOf(const DevelopedFrame& developed) {
+  double densified = 0;
+  size_t seen = 0;  // number of elements with rays
+  for (size_t i = 0; i < developed.densified.pixels().size(); ++i) {
+    if (developed.coverage.pixels()[i] == 0) continue;
+    densified += developed.densified.pixels()[i];
+    ++seen;
+  }
+  if (seen == 0) return {};
+  const auto count = static_cast<double>(seen);
+  return {densified / count, static_cast<double>(developed.doubtful_count) / count};
+}
+
 Json InputsToJson(const RunInputs& inputs) {
   Json json = Json::object();
   for (const auto& [key, value] : inputs) json[key] = value;
   return json;
+}
+
+void AddVirtualLight(const std::optional<VirtualLight>& light, Json* json) {
+  if (!light) return;
+  (*json)["densified_share"] = light->densified_share;
+  (*json)["doubtful_share"] = light->doubtful_share;
 }
 
 Json FrameToJson(const FrameReport& frame) {
@@ -31,6 +50,7 @@ Json FrameToJson(const FrameReport& frame) {
                {"develop_s", frame.develop_s}};
   if (frame.rays.virtual_count > 0) json["virtual_lf_images"] = frame.rays.virtual_count;
   if (frame.interpolated_share) json["interpolated_share"] = *frame.interpolated_share;
+  AddVirtualLight(frame.virtual_light, &json);
   if (frame.weighed) {
     json["effective_lf_images"] = frame.weighed->effective_count;
     json["hat_share"] = frame.weighed->hat_share;
@@ -64,6 +84,19 @@ uint64_t RenderReport::AcceptedRays() const {
   uint64_t count = 0;
   for (const FrameReport& frame : frames) count += frame.rays.accepted_count;
   return count;
+}
+
+std::optional<VirtualLight> RenderReport::MeanVirtualLight() const {
+  VirtualLight mean;
+  double count = 0;
+  for (const FrameReport& frame : frames) {
+    if (!frame.virtual_light) continue;
+    mean.densified_share += frame.virtual_light->densified_share;
+    mean.doubtful_share += frame.virtual_light->doubtful_share;
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  return VirtualLight{mean.densified_share / count, mean.doubtful_share / count};
 }
 
 bool RenderReport::IsBlack() const {
@@ -105,6 +138,7 @@ FrameReport MakeFrameReport(FrameId frame, const FrameRays& rays, const Develope
   if (const auto& shares = developed.interpolated.pixels(); !shares.empty())
     report.interpolated_share =
         std::accumulate(shares.begin(), shares.end(), 0.0) / static_cast<double>(shares.size());
+  if (!developed.densified.empty()) report.virtual_light = VirtualLightOf(developed);
   const LargeVector<uint32_t>& counts = developed.ray_count.pixels();
   std::vector<uint32_t> channel_counts(counts.size() / 3);
   if (channel_counts.empty()) return report;
@@ -158,6 +192,7 @@ std::string ToJson(const RenderReport& report) {
     json["virtual_lf_images"] = report.virtual_count;
     json["virtual_lf_images_selected"] = report.selected_virtual_count;
   }
+  AddVirtualLight(report.MeanVirtualLight(), &json);
   for (const PackageReport& package : report.packages) {
     Json& item =
         json["packages"].emplace_back(Json{{"name", package.name},

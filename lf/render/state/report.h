@@ -38,6 +38,16 @@ struct FrameNoise {
   uint64_t image_count = 0;       // number of LF images before `ranks` with rays in the frame
 };
 
+// How much of a frame with a guarded plate, or of a film of such frames, rests on virtual LF
+// images.
+struct VirtualLight {
+  // Mean of DevelopedFrame::densified over the elements with rays.
+  double densified_share = 0;
+  // Share of these elements whose virtual light is not trusted (DevelopedFrame::doubtful_count).
+  double doubtful_share = 0;
+  friend bool operator==(const VirtualLight&, const VirtualLight&) = default;
+};
+
 // Report of one finished frame.
 struct FrameReport {
   FrameId frame;
@@ -66,6 +76,7 @@ struct FrameReport {
   std::optional<uint32_t> ranks_done = std::nullopt;
   // The share of the picture that is interpolated from rebinned rays; unset if the mode has none.
   std::optional<double> interpolated_share = std::nullopt;
+  std::optional<VirtualLight> virtual_light = std::nullopt;  // unset unless the plate is guarded
   // Set if a rule "noise<=X" was given, unless the frame was finished early from a plate without
   // noise moments.
   std::optional<FrameNoise> noise = std::nullopt;
@@ -124,6 +135,8 @@ struct RenderReport {
 
   uint64_t TestedRays() const;
   uint64_t AcceptedRays() const;
+  // Returns the mean over the frames with guarded plates; nullopt if there are none.
+  std::optional<VirtualLight> MeanVirtualLight() const;
   // Returns true if no frame has a collected or interpolated ray.
   bool IsBlack() const;
   // Returns millions of accepted rays per CPU second of collection; 0 if collection took no time.

@@ -25,6 +25,11 @@ FrameReport FrameFromJson(const Json& json, std::string* fault) {
   fields.Get("inputs", &frame.camera);
   if (fields.Find("interpolated_share") != nullptr)
     fields.Get("interpolated_share", &frame.interpolated_share.emplace());
+  if (fields.Find("densified_share") != nullptr) {
+    VirtualLight& light = frame.virtual_light.emplace();
+    fields.Get("densified_share", &light.densified_share);
+    fields.Get("doubtful_share", &light.doubtful_share);
+  }
   if (fields.Find("effective_lf_images") != nullptr) {
     FrameReport::Weighed weighed;
     fields.Get("effective_lf_images", &weighed.effective_count);

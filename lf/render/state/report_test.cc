@@ -19,6 +19,30 @@ TEST(Report, CountsEmptyElementsPerChannel) {
   EXPECT_EQ(report.median_count, (std::array<uint64_t, 3>{0, 6, 1}));
 }
 
+TEST(Report, VirtualLightIsThatOfElementsWithRays) {
+  DevelopedFrame developed;
+  developed.densified = developed.coverage = Image<float>(5, 1);
+  const float densified[] = {0, 0.5F, 0.25F, 0.25F, 1}, coverage[] = {1, 1, 1, 1, 0};
+  std::copy(std::begin(densified), std::end(densified), developed.densified.pixels().begin());
+  std::copy(std::begin(coverage), std::end(coverage), developed.coverage.pixels().begin());
+  developed.doubtful_count = 3;
+  RenderReport report;
+  report.frames = {MakeFrameReport(FrameId{1}, {}, developed),
+                   {FrameId{2}, {}, {}, {}, {}, 0, {}, {}}};
+  EXPECT_EQ(report.frames[0].virtual_light, (VirtualLight{0.25, 0.75}));
+  EXPECT_FALSE(report.frames[1].virtual_light);
+  developed.doubtful_count = 1;
+  report.frames.push_back(MakeFrameReport(FrameId{3}, {}, developed));
+  EXPECT_EQ(report.MeanVirtualLight(), (VirtualLight{0.25, 0.5}));
+  developed.coverage = Image<float>(5, 1);
+  EXPECT_EQ(MakeFrameReport(FrameId{4}, {}, developed).virtual_light, VirtualLight());
+  EXPECT_FALSE(RenderReport().MeanVirtualLight());
+  const auto json = nlohmann::json::parse(ToJson(report));
+  EXPECT_EQ(json["doubtful_share"], 0.5);
+  EXPECT_EQ(json["frames"][2]["densified_share"], 0.25);
+  EXPECT_FALSE(json["frames"][1].contains("densified_share"));
+}
+
 TEST(Report, IsJsonEvenWithNamesThatAreNoText) {
   RenderReport report;
   report.frames.push_back({FrameId{7}, {3, 100, 90}, {}, {}, {}, 0, {}, {}});
@@ -73,6 +97,7 @@ TEST(Report, ReadsBackWhatItWrote) {
   frame.samples = FrameSamples{8, {0.25, 3}};
   frame.weighed = {12.5, 0.25, {0.75}};
   frame.noise = FrameNoise{0.002, 0.0019, 72, 70};
+  frame.virtual_light = VirtualLight{0.375, 0.125};
   frame.camera = {{"frame", "7"}};
   report.frames = {frame, {FrameId{9}, {}, {}, {}, {}, 0, {}, {}}};
   EXPECT_EQ(ToJson(report).find("virtual"), std::string::npos);

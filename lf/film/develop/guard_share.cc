@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lf/film/develop/guard_share.h"
+
+#include <algorithm>
+
+namespace lf {
+namespace {
+
+// Returns 0 up to `from`, 1 from `to` on, and between them s^2 (3 - 2 s).
+double SmoothStep(double value, double from, double to) {
+  const double s = std::clamp((value - from) / (to - from), 0.0, 1.0);
+  return s * s * (3 - 2 * s);
+}
+
+// Returns the mean of rays whose values are those of opacities.
+double MeanShareOf(const ElementSum& rays, const DevelopOptions& options) {
+  return (rays.Mean() - options.transparent) / (options.opaque - options.transparent);
+}
+
+}  // namespace
+
+GuardShare GuardShareOf(const SensorPlate& plate, const DevelopOptions& options, int x, int y) {
+  const ElementSum defocus = plate.At(x, y, plate.defocus_channel());
+  const ElementSum trust = plate.At(x, y, plate.trust_channel());
+  if (trust.count == 0) return {defocus.count == 0 ? 1.0 : 0.0, 1};
+  const double trusted = std::clamp(MeanShareOf(trust, options), 0.0, 1.0);
+  const bool is_doubtful = trusted < (kTrustFrom + kTrustTo) / 2;
+  if (defocus.count == 0) return {1, trusted, is_doubtful};
+  const double blurred = SmoothStep(MeanShareOf(defocus, options), kGuardFrom, kGuardTo);
+  if (blurred == 0) return {};
+  return {blurred * SmoothStep(trusted, kTrustFrom, kTrustTo), trusted,
+          is_doubtful && blurred > 0.5};
+}
+
+}  // namespace lf

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lf/render/collect/opacity_and_trust.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include "lf/core/check.h"
+
+namespace lf {
+namespace {
+
+constexpr uint32_t kRange = LfPixels::kOpaque - LfPixels::kTransparent;
+
+// Values of opacities by trust, rounded to nearest.
+std::array<uint16_t, LfPixels::kTrusted + 1> TrustValues() {
+  std::array<uint16_t, LfPixels::kTrusted + 1> values;
+  for (uint32_t trust = 0; trust < values.size(); ++trust)
+    values[trust] = static_cast<uint16_t>(
+        LfPixels::kTransparent + (trust * kRange + LfPixels::kTrusted / 2) / LfPixels::kTrusted);
+  return values;
+}
+
+}  // namespace
+
+LfPixels TakeOpacityAndTrust(LfPixels* pixels) {
+  LF_CHECK(pixels->bayer == BayerPattern::kNone);
+  static const auto values = TrustValues();
+  const Image<uint16_t>& radiance = pixels->radiance;
+  const Image<uint8_t>& trust = pixels->trust;
+  const int width = radiance.width();
+  LF_CHECK(trust.empty() || (trust.width() == width && trust.height() == radiance.height()));
+  const bool has_opacity = !pixels->opacity.empty();
+  LfPixels both;
+  both.radiance = std::exchange(pixels->opacity, {});
+  both.radiance.Resize(width, radiance.height(), LfPixels::kRgbLanes);
+  both.any_masked = pixels->any_masked;
+  both.rect = pixels->rect;
+  for (int y = 0; y < radiance.height(); ++y) {
+    const uint16_t* light = radiance.row(y);
+    const uint8_t* trusts = trust.empty() ? nullptr : trust.row(y);
+    uint16_t* lanes = both.radiance.row(y);
+    for (int x = 0; x < width; ++x, light += LfPixels::kRgbLanes, lanes += LfPixels::kRgbLanes) {
+      if (light[LfPixels::kRayLane] == 0) {
+        std::fill_n(lanes, LfPixels::kRgbLanes, uint16_t{0});
+        continue;
+      }
+      if (!has_opacity) lanes[0] = LfPixels::kOpaque;
+      lanes[1] = lanes[2] = trusts == nullptr ? LfPixels::kOpaque : values[trusts[x]];
+      lanes[LfPixels::kRayLane] = light[LfPixels::kRayLane];
+    }
+  }
+  return both;
+}
+
+}  // namespace lf
