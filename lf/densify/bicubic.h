@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bicubic interpolation of RGB pixels. Internal to this folder.
+// Bicubic interpolation of the pixels of working images. Internal to this folder.
 #pragma once
 
 #include <algorithm>
@@ -11,13 +11,15 @@
 #include "lf/core/catmull_rom.h"
 #include "lf/core/image.h"
 #include "lf/light_field/model/lf_pixels.h"
+#include "lf/storage/load/recorded_image.h"
 
 namespace lf {
 
-// Interpolates between the pixels [height][width][4] around continuous position (x, y). Positions
-// beyond the border pixels' centres take these pixels. Returns false if the position is outside the
-// image, or if one of the four nearest pixels is masked (its last lane is 0). Masked pixels farther
-// away count as the nearest pixel.
+// Interpolates between the pixels of WorkingImage::light around continuous position (x, y).
+// Premultiplied light and opacity get the same weights, so that the colours of transparent pixels
+// have no effect. Positions beyond the border pixels' centres take these pixels. Returns false if
+// the position is outside the image, or if one of the four nearest pixels is masked (its last lane
+// is 0). Masked pixels farther away count as the nearest pixel.
 inline bool SampleBicubic(const Image<uint16_t>& light, float x_px, float y_px, float colour[4]) {
   constexpr int kLanes = LfPixels::kRgbLanes;
   const int width = light.width(), height = light.height();
@@ -58,6 +60,27 @@ inline bool SampleBicubic(const Image<uint16_t>& light, float x_px, float y_px, 
 // Rounds an interpolated value to 16 bits.
 inline uint16_t RoundToLight(float value) {
   return static_cast<uint16_t>(std::clamp(value + 0.5f, 0.0f, 65535.0f));
+}
+
+// Returns the share of the light behind a pixel that it covers, from 0 to 1: exactly 1 if its
+// interpolated last lane is within rounding errors of that of opaque pixels.
+inline float OpacityOfLane(float lane) {
+  if (lane >= static_cast<float>(kMostOpacity)) return 1;
+  return std::max(0.0f, (lane - 1) / static_cast<float>(kMostOpacity));
+}
+
+// Rounds an interpolated pixel of WorkingImage::light that is not masked. Where the interpolation
+// of an outline makes the opacity larger than 1, it makes the light too bright by the same factor,
+// which is divided by.
+//   black  WorkingImage::black
+inline void RoundPixel(const float colour[LfPixels::kRgbLanes], uint16_t black, uint16_t* pixel) {
+  constexpr float kOpaque = kOpaqueOpacity, kRounding = 1;
+  const float lane = colour[LfPixels::kRayLane];
+  const bool is_above = lane > kOpaque + kRounding;
+  const float factor = is_above ? (kOpaque - 1) / (lane - 1) : 1;
+  for (int c = 0; c < LfPixels::kRayLane; ++c)
+    pixel[c] = RoundToLight(is_above ? black + (colour[c] - black) * factor : colour[c]);
+  pixel[LfPixels::kRayLane] = std::max<uint16_t>(RoundToLight(lane), 1);
 }
 
 }  // namespace lf

@@ -42,10 +42,6 @@ Result<void> CheckKind(const LightField& light_field) {
   if (HasVirtual(light_field))
     return UsageError(
         "the light field has virtual LF images already: densify the light field that was recorded");
-  if (light_field.encoding.AlphaIsLight())
-    return InputError(
-        "alpha is light (lf_alpha), and virtual LF images would need opacities, which are not "
-        "estimated: use {image_alpha mask}");
   if (light_field.encoding.masks_clipped)
     return InputError(
         "the light field has brackets (\"lf_clipped\": \"mask\"), which are not supported: densify "
@@ -84,7 +80,8 @@ class Densifier {
   Densifier(LightField light_field, const DensifyOptions& options, ThreadPool& pool,
             const std::function<void(const DensifyProgress&)>& progress)
       : whole_(IdentityOf(light_field)),
-        light_field_(std::move(light_field)),
+        encoding_(light_field.encoding),
+        light_field_(WithOpacities(std::move(light_field))),
         options_(options),
         pool_(pool),
         progress_(progress) {}
@@ -104,7 +101,7 @@ class Densifier {
   Result<void> SweepAll();
   Result<void> Sweep(uint32_t id);
   Result<void> RefineAll();
-  Result<DepthPlane> Refined(uint32_t id, double* agreeing_count);
+  Result<DepthPlane> Refined(uint32_t id, double* agreeing_count, double* shown_count);
   Result<void> AddRecorded(LfImageId id);
   Result<void> AddVirtual(const RecordedValues& values, size_t i);
   // Makes kind_ hold the values of a recorded LF image.
@@ -118,8 +115,9 @@ class Densifier {
     return WorkingCamera(light_field_.Camera(LfImageId{id}), options_.choices.divisor);
   }
 
-  LightFieldIdentity whole_;  // for a packed store, the light field that it was made from
-  LightField light_field_;    // without broken LF images
+  LightFieldIdentity whole_;         // for a packed store, the light field that it was made from
+  const RadianceEncoding encoding_;  // for the store
+  LightField light_field_;           // without broken LF images, and WithOpacities()
   const DensifyOptions& options_;
   ThreadPool& pool_;
   const std::function<void(const DensifyProgress&)>& progress_;
@@ -292,6 +290,7 @@ Result<void> Densifier::TestBeyond() {
 
 Result<void> Densifier::OpenWriter() {
   all_ = WithVirtual(light_field_, plan_.virtual_cameras);
+  all_.encoding = encoding_;  // the background is that of the light field
   // Virtual LF images are interpolated, so that their own pixels would not tell.
   LF_ASSIGN_OR_RETURN(all_.encoding.footprint, FootprintOf(light_field_, *store_));
   PackedStorePlan plan;
@@ -352,18 +351,20 @@ Result<void> Densifier::SweepAll() {
   return ForEach("depths", plan_.swept.size(), [&](size_t i) { return Sweep(plan_.swept[i]); });
 }
 
-Result<DepthPlane> Densifier::Refined(uint32_t id, double* agreeing_count) {
+Result<DepthPlane> Densifier::Refined(uint32_t id, double* agreeing_count, double* shown_count) {
   constexpr int kWanted = 2;
   std::vector<DepthView> views;
   for (const uint32_t other : plan_.compare_with[id])
     if (!depths_[other].empty())
       views.push_back({&depths_[other], MapBetween(CameraOf(id), CameraOf(other))});
-  const Image<uint8_t> agreeing = CountAgreeing(depths_[id], views, plan_.range, plan_.tolerance);
+  LF_ASSIGN_OR_RETURN(const auto image, images_->Get(LfImageId{id}));
+  const Image<uint8_t> agreeing =
+      CountAgreeing(depths_[id], image->tones, views, plan_.range, plan_.tolerance);
   const int wanted = std::min(kWanted, static_cast<int>(views.size()));
   *agreeing_count =
       static_cast<double>(std::count_if(agreeing.pixels().begin(), agreeing.pixels().end(),
                                         [&](uint8_t count) { return count >= wanted; }));
-  LF_ASSIGN_OR_RETURN(const auto image, images_->Get(LfImageId{id}));
+  *shown_count = static_cast<double>(ShownCount(image->tones));
   return FillDisagreeing(depths_[id], agreeing, wanted, image->tones, plan_.range,
                          plan_.shift_per_depth_px);
 }
@@ -372,19 +373,19 @@ Result<void> Densifier::RefineAll() {
   constexpr int kRounds = 2;
   for (int round = 0; round < kRounds; ++round) {
     std::vector<DepthPlane> refined(depths_.size());
-    double agreeing = 0, pixels = 0;
+    double agreeing = 0, shown = 0;
     LF_RETURN_IF_ERROR(
         ForEach("comparing depths", plan_.swept.size(), [&](size_t i) -> Result<void> {
           const uint32_t id = plan_.swept[i];
-          double count = 0;
-          LF_ASSIGN_OR_RETURN(refined[id], Refined(id, &count));
+          double agreeing_count = 0, shown_count = 0;
+          LF_ASSIGN_OR_RETURN(refined[id], Refined(id, &agreeing_count, &shown_count));
           const std::lock_guard lock(mutex_);
-          agreeing += count;
-          pixels += static_cast<double>(refined[id].pixels().size());
+          agreeing += agreeing_count;
+          shown += shown_count;
           return {};
         }));
     depths_ = std::move(refined);
-    report_.agreeing_share = agreeing / pixels;
+    report_.agreeing_share = agreeing / std::max(shown, 1.0);
   }
   return ForEach("storing depths", plan_.sources.size(), [&](size_t i) -> Result<void> {
     const LfImageId id{plan_.sources[i]};

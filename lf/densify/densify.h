@@ -65,7 +65,7 @@ struct DensifyReport {
   double distance_w = 0;  // distance between neighbouring virtual LF cameras
   double spacing_px = 0;  // DensifyPlan::spacing_px
   std::vector<LeftOut> tests;
-  // Share of the pixels on whose depth two neighbours agree.
+  // Share of the pixels on whose depth two neighbours agree, without transparent pixels.
   double agreeing_share = 0;
   // Mean of VirtualImage::weak_share of the virtual LF images that were made.
   double weak_share = 0;
@@ -75,8 +75,10 @@ struct DensifyReport {
 };
 
 // Writes the recorded LF images and virtual ones into options.store, unless the LF cameras are
-// dense enough already (DensifyReport::dense). kInput: the light field cannot be densified
-// (PlanDensify()), has opacities, or fails its test (TestByLeavingOut()) unless choices.force is
+// dense enough already (DensifyReport::dense). If alpha is light, virtual LF images have opacities,
+// whatever the background is, and the store records the alpha and the background of the light
+// field. kInput: the light field cannot be densified
+// (PlanDensify()), has brackets, or fails its test (TestByLeavingOut()) unless choices.force is
 // set; or an LF image cannot be read and `strict` is set, or fewer than three can. kUsage, kOutput
 // as PackedStoreWriter; the store exists and no option says what to do with it. kInterrupted:
 // finished work is kept.

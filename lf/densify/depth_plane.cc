@@ -73,11 +73,13 @@ DepthPlane SweepDepths(const WorkingImage& reference, std::span<const SweepView>
   return MedianOfNine(plane);
 }
 
-Image<uint8_t> CountAgreeing(const DepthPlane& plane, std::span<const DepthView> views,
-                             const InverseDepths& range, double tolerance) {
+Image<uint8_t> CountAgreeing(const DepthPlane& plane, const Image<uint16_t>& tones,
+                             std::span<const DepthView> views, const InverseDepths& range,
+                             double tolerance) {
   Image<uint8_t> agreeing(plane.width(), plane.height());
   for (int y = 0; y < plane.height(); ++y)
     for (int x = 0; x < plane.width(); ++x) {
+      if (IsTransparent(&tones.at(x, y))) continue;
       const auto z = static_cast<float>(range.Of(plane.at(x, y)));
       for (const DepthView& view : views) {
         const PairMap::Place place =

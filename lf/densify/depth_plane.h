@@ -29,9 +29,11 @@ struct DepthView {
 };
 
 // Returns, for each pixel, how many neighbours have the same inverse depth, within `tolerance`, at
-// the place where they show the pixel.
-Image<uint8_t> CountAgreeing(const DepthPlane& plane, std::span<const DepthView> views,
-                             const InverseDepths& range, double tolerance);
+// the place where they show the pixel; 0 for transparent pixels, which have no depth.
+//   tones  of the working image
+Image<uint8_t> CountAgreeing(const DepthPlane& plane, const Image<uint16_t>& tones,
+                             std::span<const DepthView> views, const InverseDepths& range,
+                             double tolerance);
 
 // Replaces the depths of pixels on which fewer than `wanted` neighbours agree. Such a pixel takes
 // the depth of the nearest pixel with enough agreement in one of eight directions: the one with the

@@ -214,7 +214,7 @@ TEST(DepthPlane, WrongDepthsAreFoundAndReplacedByThoseOfTheBackground) {
   std::vector<DepthView> views;
   for (size_t i = 1; i < images.size(); ++i)
     views.push_back({&right, MapBetween(images[0].camera, images[i].camera)});
-  const Image<uint8_t> agreeing = CountAgreeing(spoiled, views, kRange, 0.05);
+  const Image<uint8_t> agreeing = CountAgreeing(spoiled, images[0].tones, views, kRange, 0.05);
   for (int y = 8; y < 56; ++y)
     for (int x = 8; x < 88; ++x)
       ASSERT_EQ(agreeing.at(x, y), x >= 40 && x < 50 && y >= 20 && y < 30 ? 0 : 8) << x << " " << y;

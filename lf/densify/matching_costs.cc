@@ -52,6 +52,21 @@ class ThreeRows {
   LargeVector<uint16_t> values_;
 };
 
+// Sets the costs of the pixels of row y, at inverse depth z, at whose places a view is empty.
+//   columns  those of the pixels, in the reference image
+//   costs    of the pixels from column x_begin on
+void Carve(std::span<const SweepView> views, std::span<const int> columns, int y, float z,
+           int x_begin, uint8_t* costs) {
+  for (const SweepView& view : views) {
+    const Image<uint8_t>& empty = view.image->empty;
+    if (empty.empty()) continue;
+    for (const int x : columns)
+      if (IsMarkedAt(empty, view.from_reference.At(static_cast<float>(x) + 0.5f,
+                                                   static_cast<float>(y) + 0.5f, z)))
+        costs[x - x_begin] = MatchingCosts::kCarved;
+  }
+}
+
 }  // namespace
 
 SweepView ViewFrom(const WorkingImage& reference, const WorkingImage& image) {
@@ -99,8 +114,12 @@ void ComputeMatchingCosts(const WorkingImage& reference, std::span<const SweepVi
   LargeVector<uint8_t> by_plane(static_cast<size_t>(width) * planes);
 
   for (int y = std::max(rect.y_begin - 1, 0); y <= std::min(rect.y_begin, last_y); ++y) compare(y);
+  std::vector<int> shown;  // columns of the pixels that can be carved
   for (int y = rect.y_begin; y < rect.y_end; ++y) {
     if (y < last_y) compare(y + 1);
+    shown.clear();
+    for (int x = rect.x_begin; x < rect.x_end; ++x)
+      if (!IsTransparent(&reference.tones.at(x, y))) shown.push_back(x);
     const int above = std::max(y - 1, 0), below = std::min(y + 1, last_y);
     for (int plane = 0; plane < planes; ++plane) {
       for (size_t v = 0; v < views.size(); ++v)
@@ -108,6 +127,8 @@ void ComputeMatchingCosts(const WorkingImage& reference, std::span<const SweepVi
                    differences.Row(v, plane, below), width, means[v].data());
       LeastOfGroups(mean_rows.data(), group_spans, width,
                     by_plane.data() + static_cast<size_t>(plane) * width);
+      Carve(views, shown, y, static_cast<float>(range.least + plane * step), rect.x_begin,
+            by_plane.data() + static_cast<size_t>(plane) * width);
     }
     uint8_t* out = result->costs.data() + static_cast<size_t>(y - rect.y_begin) * row_size;
     for (int x = 0; x < width; ++x, out += result->stride) {

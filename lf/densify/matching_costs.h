@@ -28,6 +28,9 @@ struct MatchingCosts {
   // to kMostDifference, in steps of 1/4.
   static constexpr int kMostDifference = 60;
   static constexpr int kMost = 4 * kMostDifference;
+  // Cost of an inverse depth at which a pixel cannot be, because another LF image sees nothing
+  // there.
+  static constexpr int kCarved = 255;
   // Number of costs of a pixel in memory: `planes`, rounded up; costs beyond `planes` are kMost.
   static constexpr int kPadding = 32;
 
@@ -46,7 +49,9 @@ struct MatchingCosts {
 // depth is the least of the mean costs over several groups of views: all views, and the views on
 // one side of the reference camera, for eight sides. A pixel that is hidden from the views on one
 // side, because it lies beside the outline of a nearer object, is seen by those on the other (Kang,
-// Szeliski and Chai, "Handling occlusions in dense multi-view stereo", CVPR 2001).
+// Szeliski and Chai, "Handling occlusions in dense multi-view stereo", CVPR 2001). No side explains
+// a view that is transparent there (WorkingImage::empty): the cost is then kCarved, unless the
+// pixel is transparent.
 //   views  one or more
 void ComputeMatchingCosts(const WorkingImage& reference, std::span<const SweepView> views,
                           const InverseDepths& range, int planes, const PixelRect& rect,

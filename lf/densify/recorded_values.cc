@@ -73,7 +73,10 @@ StoredKind KindToHold(const StoredKind& a, const StoredKind& b) {
 }
 
 RecordedValues::RecordedValues(const RadianceEncoding& encoding, const StoredKind& kind)
-    : encoding_(encoding), kind_(kind) {
+    : encoding_(encoding),
+      kind_(kind),
+      has_opacity_(encoding.AlphaIsLight() && kind.layout != PixelLayout::kMosaic),
+      is_straight_(has_opacity_ && *encoding.alpha == AlphaMeaning::kStraight) {
   if (kind.values != StoredValues::kHalf)
     light_ = LightTable(encoding, kind.values == StoredValues::kUint8 ? 8 : 16);
 }
@@ -82,12 +85,28 @@ std::vector<uint16_t> RecordedValues::StoredOf(double gain) const {
   return light_.empty() ? StoredFloats(encoding_, gain) : NearestStored(encoding_, light_, gain);
 }
 
+uint16_t RecordedValues::StoredOpacity(uint16_t opacity) const {
+  if (kind_.values != StoredValues::kUint8) return opacity;
+  // The alphas of 8-bit files have 257 times their value, at most kMostOpacity.
+  constexpr uint32_t kStep = 257;
+  const uint32_t steps = (opacity - 1u + kStep / 2) / kStep;
+  return static_cast<uint16_t>(1 + std::min<uint32_t>(steps * kStep, kMostOpacity));
+}
+
 RecordedImage RecordedValues::Of(const Image<uint16_t>& light, const ChannelGains& gains) const {
   std::array<std::vector<uint16_t>, 3> tables = {StoredOf(gains[0])};
   for (size_t c = 1; c < tables.size(); ++c)
     tables[c] = gains[c] == gains[0] ? tables[0] : StoredOf(gains[c]);
-  const auto stored_of = [&](const uint16_t* pixel, int c) {
-    return tables[static_cast<size_t>(c)][pixel[c]];
+  const uint16_t black = QuantizeRadiance(encoding_, 0, 1);
+  // The light of a straight colour is black + (colour - black) * opacity.
+  const auto stored_of = [&](const uint16_t* pixel, int c, uint16_t opacity) {
+    int v = pixel[c];
+    if (is_straight_ && opacity != kOpaqueOpacity) {
+      const double share = (opacity - 1.0) / kMostOpacity;
+      v = share > 0 ? static_cast<int>(std::clamp(black + (v - black) / share + 0.5, 0.0, 65535.0))
+                    : black;
+    }
+    return tables[static_cast<size_t>(c)][static_cast<size_t>(v)];
   };
   const int channels = kind_.layout == PixelLayout::kRgb ? 3 : 1;
   RecordedImage image;
@@ -98,16 +117,24 @@ RecordedImage RecordedValues::Of(const Image<uint16_t>& light, const ChannelGain
   for (int y = 0; y < light.height(); ++y)
     for (int x = 0; x < light.width(); ++x) {
       const uint16_t* pixel = &light.at(x, y);
-      if (pixel[LfPixels::kRayLane] == 0) {
+      uint16_t opacity = pixel[LfPixels::kRayLane];
+      if (has_opacity_) {
+        if (opacity != kMaskedOpacity) opacity = StoredOpacity(opacity);
+        if (opacity != kOpaqueOpacity && image.opacities.empty())
+          image.opacities = Image<uint16_t>(light.width(), light.height(), 1, kOpaqueOpacity);
+        if (!image.opacities.empty()) image.opacities.at(x, y) = opacity;
+        if (opacity == kMaskedOpacity) continue;
+      } else if (opacity == 0) {
         if (image.mask.empty()) image.mask = Image<uint8_t>(light.width(), light.height(), 1, 255);
         image.mask.at(x, y) = 0;
         continue;
       }
       if (kind_.layout == PixelLayout::kRgb)
-        for (int c = 0; c < 3; ++c) values.at(x, y, c) = stored_of(pixel, c);
+        for (int c = 0; c < 3; ++c) values.at(x, y, c) = stored_of(pixel, c, opacity);
       else
         values.at(x, y) = stored_of(
-            pixel, kind_.layout == PixelLayout::kMosaic ? BayerChannel(encoding_.bayer, x, y) : 1);
+            pixel, kind_.layout == PixelLayout::kMosaic ? BayerChannel(encoding_.bayer, x, y) : 1,
+            opacity);
     }
   if (kind_.values == StoredValues::kUint8) {
     Image<uint8_t> bytes(light.width(), light.height(), channels);

@@ -34,17 +34,23 @@ class RecordedValues {
   RecordedValues(const RadianceEncoding& encoding, const StoredKind& kind);
 
   // Returns an LF image that is loaded as `light`, up to the steps of the stored values, if its LF
-  // camera has these gains and no falloff. Pixels without light are masked. For a mosaic, each
-  // pixel keeps the colour that its pattern has there; for grey images, it is G.
-  //   light  [height][width][4]: 16-bit radiance R, G, B and 1, or 0
+  // camera has these gains and no falloff. For a mosaic, each pixel keeps the colour that its
+  // pattern has there; for grey images, it is G. If alpha is light, colours are straight or
+  // premultiplied as the encoding says, and opacities are kept, beside 8-bit colours in 255 steps;
+  // otherwise opacities have no effect.
+  //   light  WorkingImage::light
   RecordedImage Of(const Image<uint16_t>& light, const ChannelGains& gains = {}) const;
 
  private:
   // Returns, for each 16-bit radiance, the stored value that is nearest to it.
   std::vector<uint16_t> StoredOf(double gain) const;
 
+  // Returns the opacity that is stored.
+  uint16_t StoredOpacity(uint16_t opacity) const;
+
   const RadianceEncoding encoding_;
   const StoredKind kind_;
+  const bool has_opacity_, is_straight_;
   std::vector<double> light_;  // [stored value]: its light before the gain; empty for floats
 };
 

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "lf/core/median.h"
+#include "lf/densify/bicubic.h"
 #include "lf/densify/camera_chart.h"
 #include "lf/densify/camera_lattice.h"
 #include "lf/densify/depth_plane.h"
@@ -30,13 +31,21 @@ constexpr int kBlendDepths = 12;
 constexpr size_t kLeastSources = 2;
 constexpr size_t kLeastAround = 3;  // LF cameras that surround another one
 
-// Returns the tones of light, smoothed by two means over 3 x 3 pixels. NaN where there is no light.
+// Returns the tones of light, smoothed by two means over 3 x 3 pixels. NaN where pixels are masked.
+// Grey is behind what is transparent, so that bright and dark outlines differ from it.
 Image<float> SmoothTones(const Image<uint16_t>& light, const ToneCurve& curve) {
   Image<float> tones(light.width(), light.height(), 3, NAN);
+  constexpr uint8_t kGrey = 128;
+  uint16_t grey = curve.black();
+  while (curve.Tone(grey) < kGrey) ++grey;
+  const auto grey_light = static_cast<float>(grey - curve.black());
   for (int y = 0; y < light.height(); ++y)
-    for (int x = 0; x < light.width(); ++x)
-      for (int c = 0; c < 3 && light.at(x, y, LfPixels::kRayLane) != 0; ++c)
-        tones.at(x, y, c) = curve.Tone(light.at(x, y, c));
+    for (int x = 0; x < light.width(); ++x) {
+      const uint16_t* pixel = &light.at(x, y);
+      if (pixel[LfPixels::kRayLane] == 0) continue;
+      const float behind = grey_light * (1 - OpacityOfLane(pixel[LfPixels::kRayLane]));
+      for (int c = 0; c < 3; ++c) tones.at(x, y, c) = curve.Tone(RoundToLight(pixel[c] + behind));
+    }
   for (int round = 0; round < 2; ++round) {
     const Image<float> sharp = tones;
     for (int y = 1; y + 1 < tones.height(); ++y)
@@ -51,17 +60,28 @@ Image<float> SmoothTones(const Image<uint16_t>& light, const ToneCurve& curve) {
   return tones;
 }
 
-double PsnrDb(const Image<float>& a, const Image<float>& b) {
+bool ShowsNothing(const Image<uint16_t>& light, int x, int y) {
+  constexpr float kFaint = 0.016f;
+  const uint16_t lane = light.at(x, y, LfPixels::kRayLane);
+  return lane != 0 && OpacityOfLane(lane) <= kFaint;
+}
+
+// Compares smooth tones where something is to be seen in one of both images.
+//   light_a, light_b  the images that they were made of
+double PsnrDb(const Image<float>& a, const Image<uint16_t>& light_a, const Image<float>& b,
+              const Image<uint16_t>& light_b) {
   constexpr int kBorder = 4;
   double squares = 0, count = 0;
   for (int y = kBorder; y < a.height() - kBorder; ++y)
-    for (int x = kBorder; x < a.width() - kBorder; ++x)
+    for (int x = kBorder; x < a.width() - kBorder; ++x) {
+      if (ShowsNothing(light_a, x, y) && ShowsNothing(light_b, x, y)) continue;
       for (int c = 0; c < 3; ++c) {
         const double error = static_cast<double>(a.at(x, y, c) - b.at(x, y, c)) / 255;
         if (std::isnan(error)) continue;
         squares += error * error;
         ++count;
       }
+    }
   if (count == 0) return 0;
   constexpr double kLeast = 1e-10;
   return -10 * std::log10(std::max(squares / count, kLeast));
@@ -220,13 +240,15 @@ Result<LeftOut> Tester::Test(uint32_t left_out, bool one_side) {
   for (size_t i = 0; i < ids.size(); ++i)
     result.angle_deg +=
         neighbours[i].weight / sum * AngleDeg(recorded->camera, group.images[i]->camera, middle);
-  result.virtual_psnr_db = PsnrDb(SmoothTones(made_with(group.planes), curve_), truth);
+  const auto psnr_db = [&](const Image<uint16_t>& made) {
+    return PsnrDb(SmoothTones(made, curve_), made, truth, recorded->light);
+  };
+  result.virtual_psnr_db = psnr_db(made_with(group.planes));
   for (int i = 0; i < kBlendDepths; ++i) {
     std::vector<DepthPlane> flat = group.planes;
     const auto number = static_cast<uint16_t>(1 + i * InverseDepths::kLast / (kBlendDepths - 1));
     for (DepthPlane& plane : flat) std::fill(plane.pixels().begin(), plane.pixels().end(), number);
-    result.blend_psnr_db =
-        std::max(result.blend_psnr_db, PsnrDb(SmoothTones(made_with(flat), curve_), truth));
+    result.blend_psnr_db = std::max(result.blend_psnr_db, psnr_db(made_with(flat)));
   }
   return result;
 }

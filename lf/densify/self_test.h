@@ -42,7 +42,7 @@ inline constexpr double kNearlyRightDb = 36;
 
 // Leaves out up to eight of the sources of virtual LF images in turn, spread over them, and
 // compares each with the virtual LF image that is made of its neighbours; both are reduced to about
-// 200 pixels and smoothed. The distances between LF cameras are therefore larger than they will be.
+// 200 pixels, smoothed and compared where something is to be seen. The distances between LF cameras are therefore larger than they will be.
 // LF images on the hull of the LF cameras are not tested, because none surround them. If fewer than
 // four are inside it, as in a row, those between two others are tested. Empty if there are none.
 // If virtual LF cameras stand beyond the recorded ones, up to four LF images are also made of those

@@ -12,11 +12,13 @@ namespace lf {
 namespace {
 
 constexpr int kPaths = 8;
-// Larger than any path cost: these are at most kMost + kLargeStep.
+// Larger than any path cost: these are at most kCarved + kLargeStep.
 constexpr uint16_t kNoPath = 30000;
 
 int Difference(const uint16_t* a, const uint16_t* b) {
-  return (std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2])) / 3;
+  // An object may be as dark as the transparent pixels around it.
+  const int of_opacity = a[3] == 0 || b[3] == 0 ? 0 : std::abs(a[3] - b[3]);
+  return (std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2])) / 3 + of_opacity;
 }
 
 // Returns the cost of a large step between two pixels with these tones.

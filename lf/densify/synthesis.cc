@@ -15,7 +15,7 @@
 namespace lf {
 namespace {
 
-constexpr int kColours = LfPixels::kRayLane;
+constexpr int kColours = LfPixels::kRayLane, kLanes = LfPixels::kRgbLanes;
 constexpr float kNoDepth = -1e30f;
 
 // Agreement of two inverse depths whose difference is `error` tolerances: 1 if it is 0, 0 from 2
@@ -47,7 +47,9 @@ class SourceView {
     std::fill(candidates->pixels().begin(), candidates->pixels().end(), kNoDepth);
     for (int y = 0; y < plane.height(); ++y)
       for (int x = 0; x < plane.width(); ++x) {
-        if (source_.image->light.at(x, y, kColours) == 0) continue;
+        if (source_.image->light.at(x, y, kColours) == 0 ||
+            IsTransparent(&source_.image->tones.at(x, y)))
+          continue;
         const float z = DepthAt(x, y);
         const PairMap::Place place =
             from_source_.At(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, z);
@@ -86,8 +88,13 @@ class SourceView {
     const float there = DepthAt(static_cast<int>(place.u_px), static_cast<int>(place.v_px));
     return {true, place.u_px, place.v_px, (there - z / place.w) * per_tolerance};
   }
-  bool Sample(const Seen& seen, float colour[LfPixels::kRgbLanes]) const {
+  bool Sample(const Seen& seen, float colour[kLanes]) const {
     return SampleBicubic(source_.image->light, seen.u_px, seen.v_px, colour);
+  }
+  bool HasEmpty() const { return !source_.image->empty.empty(); }
+  // Returns true if the source shows that nothing is at a point of the virtual image.
+  bool SeesNothingAt(float x, float y, float z) const {
+    return HasEmpty() && IsMarkedAt(source_.image->empty, to_source_.At(x, y, z));
   }
 
  private:
@@ -114,12 +121,14 @@ class Synthesizer {
         height_(camera.intrinsics.height_px),
         tolerance_(static_cast<float>(tolerance)),
         per_tolerance_(static_cast<float>(1 / tolerance)),
-        farthest_(static_cast<float>(range.least)) {
+        farthest_(static_cast<float>(range.least)),
+        nothing_{sources[0].image->black, sources[0].image->black, sources[0].image->black, 1} {
     for (const Source& source : sources) {
       views_.emplace_back(camera, source, range);
       candidates_.emplace_back(width_, height_);
       views_.back().Project(&candidates_.back());
     }
+    Carve();
     FillHoles();
   }
 
@@ -127,19 +136,45 @@ class Synthesizer {
     constexpr float kWeak = 0.4f;
     VirtualImage image{Image<uint16_t>(width_, height_, LfPixels::kRgbLanes),
                        Image<uint8_t>(width_, height_), 0};
-    size_t weak = 0;
+    size_t weak = 0, transparent = 0;
     std::array<Candidate, kMostSources> elected;
     for (int y = 0; y < height_; ++y)
       for (int x = 0; x < width_; ++x) {
         const size_t count = Vote(x, y, &elected);
+        if (count == 0) {
+          std::copy(nothing_.begin(), nothing_.end(), &image.light.at(x, y));
+          image.trust.at(x, y) = LfPixels::kTrusted;
+          ++transparent;
+          continue;
+        }
         if (elected[0].votes < kWeak) ++weak;
         image.trust.at(x, y) = Mix(x, y, {elected.data(), count}, &image.light.at(x, y));
       }
-    image.weak_share = static_cast<double>(weak) / (static_cast<double>(width_) * height_);
+    const double shown = static_cast<double>(width_) * height_ - static_cast<double>(transparent);
+    image.weak_share = static_cast<double>(weak) / std::max(shown, 1.0);
     return image;
   }
 
  private:
+  bool IsCarved(int x, int y, float depth) const {
+    return std::any_of(views_.begin(), views_.end(), [&](const SourceView& view) {
+      return view.SeesNothingAt(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, depth);
+    });
+  }
+
+  // Removes the candidates at which nothing can be.
+  void Carve() {
+    if (std::none_of(views_.begin(), views_.end(),
+                     [](const SourceView& view) { return view.HasEmpty(); }))
+      return;
+    for (Image<float>& candidates : candidates_)
+      for (int y = 0; y < height_; ++y)
+        for (int x = 0; x < width_; ++x) {
+          float& depth = candidates.at(x, y);
+          if (depth != kNoDepth && IsCarved(x, y, depth)) depth = kNoDepth;
+        }
+  }
+
   // Finds a depth for the pixels without a candidate: step by step, a pixel takes the least inverse
   // depth of the eight pixels around it that have one. Pixels farther than kReach from all
   // candidates take the least of the scene.
@@ -177,8 +212,8 @@ class Synthesizer {
     for (const auto& [x, y] : open) holes_.at(x, y) = farthest_;
   }
 
-  // Writes the candidates of a pixel with their votes, the elected one first. Returns their number,
-  // at least 1.
+  // Writes the candidates of a pixel with their votes, the elected one first. Returns their number;
+  // 0 if nothing is at the pixel.
   size_t Vote(int x, int y, std::array<Candidate, kMostSources>* result) const {
     // Candidates this near to each other, in tolerances, are one.
     constexpr float kSame = 0.3f;
@@ -209,7 +244,7 @@ class Synthesizer {
     }
     if (count == 0) {
       found[0] = {holes_.at(x, y), 0};
-      return 1;
+      return IsCarved(x, y, found[0].depth) ? 0 : 1;
     }
     std::swap(found[0], found[best]);
     return count;
@@ -218,50 +253,55 @@ class Synthesizer {
   // Writes the colour of a pixel; leaves it 0 if no source shows it. Returns the trust in it.
   uint8_t Mix(int x, int y, std::span<const Candidate> elected, uint16_t* pixel) const {
     constexpr float kClose = 0.6f;  // candidates with so many fewer votes have no part
-    float colour[kColours] = {}, sum = 0, spread = 0;
+    float colour[kLanes] = {}, sum = 0, spread = 0;
     for (const Candidate& candidate : elected) {
       const float rest = 1 - (elected[0].votes - candidate.votes) / kClose;
       if (!(rest > 0)) continue;
       const float share = rest * rest * rest;
-      float at_depth[kColours];
+      float at_depth[kLanes];
       float* const wants_spread = &candidate == elected.data() ? &spread : nullptr;
       if (!ColourAt(x, y, candidate.depth, at_depth, wants_spread)) continue;
-      for (int c = 0; c < kColours; ++c) colour[c] += share * at_depth[c];
+      for (int c = 0; c < kLanes; ++c) colour[c] += share * at_depth[c];
       sum += share;
     }
     if (!(sum > 0)) return 0;
-    for (int c = 0; c < kColours; ++c) pixel[c] = RoundToLight(colour[c] / sum);
-    pixel[kColours] = 1;
-    return TrustOf(elected[0].votes, spread);
+    for (float& lane : colour) lane /= sum;
+    RoundPixel(colour, nothing_[0], pixel);
+    // What is transparent is known.
+    const float opacity = OpacityOfLane(colour[kColours]);
+    return static_cast<uint8_t>(opacity * TrustOf(elected[0].votes, spread) +
+                                (1 - opacity) * LfPixels::kTrusted + 0.5f);
   }
 
   // Computes the colour of a pixel if it has this depth. False if no source shows it.
   //   spread  receives the spread of the colours of the sources that agree on the depth; may be
   //   null
-  bool ColourAt(int x, int y, float depth, float result[kColours], float* spread) const {
+  bool ColourAt(int x, int y, float depth, float result[kLanes], float* spread) const {
     // The more sources agree on the depth, the less the others count.
     constexpr float kFewVotes = 0.02f;
-    float agreed[kColours] = {}, agreed_sum = 0, all[kColours] = {}, all_sum = 0;
+    float agreed[kLanes] = {}, agreed_sum = 0, all[kLanes] = {}, all_sum = 0;
     std::array<WeighedColour, kMostSources> colours;
     size_t colour_count = 0;
     for (const SourceView& view : views_) {
       const SourceView::Seen seen = view.See(static_cast<float>(x) + 0.5f,
                                              static_cast<float>(y) + 0.5f, depth, per_tolerance_);
-      float colour[LfPixels::kRgbLanes];
+      float colour[kLanes];
       if (!seen.is_inside || !view.Sample(seen, colour)) continue;
-      const float weight = view.weight() * Agreement(seen.error);
-      for (int c = 0; c < kColours; ++c) {
-        agreed[c] += weight * colour[c];
+      const float agreement = Agreement(seen.error), weight = view.weight() * agreement;
+      // The part of the source's pixel that is transparent agrees that nothing is at the place.
+      const float through = view.weight() * (1 - agreement) * (1 - OpacityOfLane(colour[kColours]));
+      for (int c = 0; c < kLanes; ++c) {
+        agreed[c] += weight * colour[c] + through * nothing_[static_cast<size_t>(c)];
         all[c] += view.weight() * colour[c];
       }
       colours[colour_count++] = {{colour[0], colour[1], colour[2]}, weight};
-      agreed_sum += weight;
+      agreed_sum += weight + through;
       all_sum += view.weight();
     }
     if (!(all_sum > 0)) return false;
     if (spread != nullptr) *spread = SpreadOf({colours.data(), colour_count});
     const float trust = agreed_sum / (agreed_sum + kFewVotes);
-    for (int c = 0; c < kColours; ++c)
+    for (int c = 0; c < kLanes; ++c)
       result[c] =
           (agreed_sum > 0 ? trust * agreed[c] / agreed_sum : 0) + (1 - trust) * all[c] / all_sum;
     return true;
@@ -269,6 +309,7 @@ class Synthesizer {
 
   const int width_, height_;
   const float tolerance_, per_tolerance_, farthest_;
+  const std::array<uint16_t, kLanes> nothing_;  // a transparent pixel
   std::vector<SourceView> views_;
   std::vector<Image<float>> candidates_;
   Image<float> holes_;  // for pixels without a candidate: a depth from around them

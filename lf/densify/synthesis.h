@@ -21,10 +21,12 @@ struct Source {
 };
 
 struct VirtualImage {
-  Image<uint16_t> light;  // [height][width][4]: 16-bit radiance R, G, B and 1; 0 if no source shows
-                          // the pixel
-  Image<uint8_t> trust;  // [height][width]: trust in the pixel (TrustOf()); 0 if no source shows it
-  // Share of the pixels on whose depth sources with less than 2/5 of the weight agree.
+  Image<uint16_t> light;  // WorkingImage::light; masked where no source shows the pixel
+  // [height][width]: trust in the pixel (TrustOf()), LfPixels::kTrusted for what is transparent; 0
+  // if no source shows it.
+  Image<uint8_t> trust;
+  // Share of the pixels on whose depth sources with less than 2/5 of the weight agree, without
+  // transparent pixels.
   double weak_share = 0;
 };
 
@@ -39,6 +41,12 @@ struct VirtualImage {
 //      candidates, because a pixel at an outline shows two depths (Penner and Zhang, "Soft 3D
 //      reconstruction for view synthesis", 2017).
 // A pixel without candidate takes the largest depth that a candidate around it has.
+//
+// Opacity is a channel like the colours, which are premultiplied. Transparent pixels project no
+// candidate. A candidate at whose place a source is empty (WorkingImage::empty) is removed: nothing
+// can be there. So is the depth of a pixel without candidate, and the pixel is then transparent. A
+// source that is partly transparent at a place shows that nothing is there with the rest of its
+// weight, whatever its depth.
 //   camera     without distortion
 //   sources    1 to kMostSources
 //   tolerance  of inverse depths that count as equal

@@ -127,7 +127,7 @@ TEST(Synthesis, PixelsThatNoSourceShowsAreMasked) {
   int masked = 0, shown = 0;
   for (int y = 0; y < image.light.height(); ++y)
     for (int x = 0; x < image.light.width(); ++x) {
-      const bool is_shown = image.light.at(x, y, 3) == 1;
+      const bool is_shown = image.light.at(x, y, 3) != 0;
       ++(is_shown ? shown : masked);
       if (!is_shown) {
         EXPECT_EQ(image.light.at(x, y, 0), 0);

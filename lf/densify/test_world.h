@@ -10,6 +10,7 @@
 #include "lf/camera/pinhole.h"
 #include "lf/core/test_value_noise.h"
 #include "lf/densify/working_image.h"
+#include "lf/storage/load/recorded_image.h"
 
 namespace lf {
 
@@ -52,7 +53,7 @@ inline WorkingImage ImageOfWalls(const PinholeCamera& camera, const std::vector<
         image.light.at(x, y, c) = static_cast<uint16_t>(65535 * value);
         image.tones.at(x, y, c) = static_cast<uint16_t>(255 * value);
       }
-      image.light.at(x, y, 3) = 1;
+      image.light.at(x, y, 3) = kOpaqueOpacity;
       image.tones.at(x, y, 3) = 255;
     }
   return image;

@@ -4,12 +4,29 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 #include "lf/camera/distortion.h"
 #include "lf/densify/bicubic.h"
+#include "lf/storage/load/recorded_image.h"
 
 namespace lf {
 namespace {
+
+// Returns the light with the opacities in the last lane.
+Image<uint16_t> LightOf(const LfPixels& pixels) {
+  constexpr uint32_t kRange = LfPixels::kOpaque - LfPixels::kTransparent;
+  Image<uint16_t> light = pixels.radiance;
+  for (size_t i = LfPixels::kRayLane; i < light.pixels().size(); i += LfPixels::kRgbLanes) {
+    uint16_t& lane = light.pixels()[i];
+    if (lane == 0) continue;
+    lane = kOpaqueOpacity;
+    if (pixels.opacity.empty()) continue;
+    const uint32_t v = pixels.opacity.pixels()[i - LfPixels::kRayLane] - LfPixels::kTransparent;
+    lane = static_cast<uint16_t>(1 + (v * kMostOpacity + kRange / 2) / kRange);
+  }
+  return light;
+}
 
 // Returns the means of divisor x divisor pixels. A mean is masked if one of its pixels is.
 Image<uint16_t> Reduced(const Image<uint16_t>& light, int divisor) {
@@ -19,11 +36,13 @@ Image<uint16_t> Reduced(const Image<uint16_t>& light, int divisor) {
   for (int y = 0; y < reduced.height(); ++y)
     for (int x = 0; x < reduced.width(); ++x) {
       uint32_t sums[LfPixels::kRgbLanes] = {};
+      bool is_whole = true;
       for (int j = 0; j < divisor; ++j)
-        for (int i = 0; i < divisor * LfPixels::kRgbLanes; ++i)
-          sums[i % LfPixels::kRgbLanes] +=
-              light.row(y * divisor + j)[x * divisor * LfPixels::kRgbLanes + i];
-      const bool is_whole = sums[LfPixels::kRayLane] == count;
+        for (int i = 0; i < divisor; ++i) {
+          const uint16_t* pixel = &light.at(x * divisor + i, y * divisor + j);
+          for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane) sums[lane] += pixel[lane];
+          is_whole &= pixel[LfPixels::kRayLane] != 0;
+        }
       for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane)
         reduced.at(x, y, lane) =
             is_whole ? static_cast<uint16_t>((sums[lane] + count / 2) / count) : uint16_t{0};
@@ -33,7 +52,8 @@ Image<uint16_t> Reduced(const Image<uint16_t>& light, int divisor) {
 
 // Returns the image that a camera without distortion would record.
 //   k  intrinsics of `light`, with distortion
-Image<uint16_t> Undistorted(const Image<uint16_t>& light, const Intrinsics& k) {
+//   black  of a working image
+Image<uint16_t> Undistorted(const Image<uint16_t>& light, const Intrinsics& k, uint16_t black) {
   const DistortionMap map(k.distortion);
   const Mat3 direction_of_pixel = k.InverseMatrix();
   Image<uint16_t> ideal(light.width(), light.height(), LfPixels::kRgbLanes);
@@ -45,16 +65,56 @@ Image<uint16_t> Undistorted(const Image<uint16_t>& light, const Intrinsics& k) {
       const double v = k.fy_px * at->y() + k.cy_px;
       float colour[LfPixels::kRgbLanes];
       if (!SampleBicubic(light, static_cast<float>(u), static_cast<float>(v), colour)) continue;
-      for (int lane = 0; lane < LfPixels::kRayLane; ++lane)
-        ideal.at(x, y, lane) = RoundToLight(colour[lane]);
-      ideal.at(x, y, LfPixels::kRayLane) = 1;
+      RoundPixel(colour, black, &ideal.at(x, y));
     }
   return ideal;
 }
 
+// Returns the last tone of a pixel that is not masked.
+uint16_t OpacityTone(uint16_t opacity) {
+  constexpr uint32_t kRange = 255 - kTransparentTone;
+  return static_cast<uint16_t>(kTransparentTone +
+                               ((opacity - 1u) * kRange + kMostOpacity / 2) / kMostOpacity);
+}
+
 }  // namespace
 
+bool IsTransparent(const uint16_t* tones) {
+  constexpr int kFaintOpacity = 3, kFaintTone = 40;  // 1.6 %, and light of 0.02
+  const uint16_t opacity = tones[LfPixels::kRayLane];
+  return opacity != 0 && opacity <= kTransparentTone + kFaintOpacity && tones[0] <= kFaintTone &&
+         tones[1] <= kFaintTone && tones[2] <= kFaintTone;
+}
+
+size_t ShownCount(const Image<uint16_t>& tones) {
+  size_t count = 0;
+  for (size_t i = 0; i < tones.pixels().size(); i += LfPixels::kRgbLanes)
+    if (!IsTransparent(tones.pixels().data() + i)) ++count;
+  return count;
+}
+
+Image<uint8_t> EmptyPixels(const Image<uint16_t>& tones) {
+  Image<uint8_t> empty(tones.width(), tones.height());
+  bool is_any = false;
+  for (int y = 0; y < tones.height(); ++y)
+    for (int x = 0; x < tones.width(); ++x) {
+      bool is_empty = true;
+      for (int j = std::max(y - 1, 0); is_empty && j <= std::min(y + 1, tones.height() - 1); ++j)
+        for (int i = std::max(x - 1, 0); is_empty && i <= std::min(x + 1, tones.width() - 1); ++i)
+          is_empty = IsTransparent(&tones.at(i, j));
+      empty.at(x, y) = is_empty ? 1 : 0;
+      is_any |= is_empty;
+    }
+  return is_any ? std::move(empty) : Image<uint8_t>();
+}
+
 int TextureAt(const Image<uint16_t>& tones, int x, int y) {
+  constexpr int kSameOpacity = 16;
+  const int opacity = tones.at(x, y, LfPixels::kRayLane);
+  for (const uint16_t beside :
+       {tones.at(x - 1, y, LfPixels::kRayLane), tones.at(x + 1, y, LfPixels::kRayLane),
+        tones.at(x, y - 1, LfPixels::kRayLane), tones.at(x, y + 1, LfPixels::kRayLane)})
+    if (opacity != 0 && beside != 0 && std::abs(beside - opacity) > kSameOpacity) return 0;
   return std::abs(tones.at(x + 1, y, 1) - tones.at(x - 1, y, 1)) +
          std::abs(tones.at(x, y + 1, 1) - tones.at(x, y - 1, 1));
 }
@@ -70,7 +130,8 @@ PinholeCamera WorkingCamera(const PinholeCamera& lf_camera, int divisor) {
   return camera;
 }
 
-ToneCurve::ToneCurve(const RadianceEncoding& encoding) : tones_(65536) {
+ToneCurve::ToneCurve(const RadianceEncoding& encoding)
+    : black_(QuantizeRadiance(encoding, 0, 1)), tones_(65536) {
   const double most = encoding.max_radiance;
   for (int v = 0; v < 65536; ++v) {
     const double x = std::max(0.0, (v - encoding.pedestal) / encoding.Scale());
@@ -84,11 +145,12 @@ WorkingImage WorkingImageOf(const PinholeCamera& lf_camera, const LfPixels& pixe
                             const ToneCurve& curve) {
   WorkingImage image;
   image.camera = WorkingCamera(lf_camera, divisor);
-  image.light = Reduced(pixels.radiance, divisor);
+  image.black = curve.black();
+  image.light = Reduced(LightOf(pixels), divisor);
   if (lf_camera.intrinsics.has_distortion()) {
     Intrinsics distorted = image.camera.intrinsics;
     distorted.distortion = lf_camera.intrinsics.distortion;
-    image.light = Undistorted(image.light, distorted);
+    image.light = Undistorted(image.light, distorted, image.black);
   }
   image.tones = Image<uint16_t>(image.width(), image.height(), LfPixels::kRgbLanes);
   const size_t count = image.light.pixels().size();
@@ -97,9 +159,18 @@ WorkingImage WorkingImageOf(const PinholeCamera& lf_camera, const LfPixels& pixe
     uint16_t* tones = image.tones.pixels().data() + i;
     if (light[LfPixels::kRayLane] == 0) continue;
     for (int lane = 0; lane < LfPixels::kRayLane; ++lane) tones[lane] = curve.Tone(light[lane]);
-    tones[LfPixels::kRayLane] = 255;
+    tones[LfPixels::kRayLane] = OpacityTone(light[LfPixels::kRayLane]);
   }
+  image.empty = EmptyPixels(image.tones);
   return image;
+}
+
+LightField WithOpacities(LightField light_field) {
+  RadianceEncoding& encoding = light_field.encoding;
+  if (!encoding.AlphaIsLight()) return light_field;
+  encoding.background.emplace();
+  encoding.keeps_opacity = true;
+  return light_field;
 }
 
 Result<WorkingImage> LoadWorkingImage(const LightField& light_field, const LfImageStore& store,

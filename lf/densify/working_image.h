@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An LF image in the form that the densifier works with: RGB, without lens distortion, perhaps
-// reduced.
+// An LF image in the form that the densifier works with: RGB with opacity, without lens distortion,
+// perhaps reduced.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,7 @@
 #include "lf/core/ids.h"
 #include "lf/core/image.h"
 #include "lf/core/result.h"
+#include "lf/densify/pair_map.h"
 #include "lf/light_field/model/lf_pixels.h"
 #include "lf/light_field/model/light_field.h"
 #include "lf/storage/load/lf_image_store.h"
@@ -16,16 +17,46 @@
 namespace lf {
 
 struct WorkingImage {
-  PinholeCamera camera;   // without distortion and vignetting
-  Image<uint16_t> light;  // [height][width][4]: 16-bit radiance R, G, B and 1; 0 if masked
-  Image<uint16_t> tones;  // [height][width][4]: R, G, B from 0 to 255 on a tone curve, for
-                          // comparing; the last is 255, or 0 if the pixel is masked
+  PinholeCamera camera;  // without distortion and vignetting
+  // [height][width][4]: 16-bit radiance R, G, B over black, and the opacity as a value of
+  // RecordedImage::opacities: kOpaqueOpacity if nothing is seen through the pixel, 0 in all four
+  // lanes if it is masked.
+  Image<uint16_t> light;
+  // [height][width][4], for comparing: R, G, B from 0 to 255 on a tone curve, and the opacity from
+  // kTransparentTone to 255; all 0 if the pixel is masked. A masked pixel is unknown, and a
+  // transparent one is known to show nothing: these differ as much as any two pixels.
+  Image<uint16_t> tones;
+  // [height][width]: 1 if the pixel and the eight around it are transparent, otherwise 0. Nothing
+  // is along the ray of such a pixel, also if its LF camera is a little wrong. Empty if there is
+  // no such pixel.
+  Image<uint8_t> empty = {};
+  uint16_t black = 0;  // 16-bit radiance of no light
   int width() const { return light.width(); }
   int height() const { return light.height(); }
 };
 
+inline constexpr int kTransparentTone = 64;
+// Returns true if a pixel is not masked and shows next to nothing.
+//   tones  its four tones
+bool IsTransparent(const uint16_t* tones);
+
+// Returns the number of pixels that are not transparent.
+size_t ShownCount(const Image<uint16_t>& tones);
+
+// Returns WorkingImage::empty.
+Image<uint8_t> EmptyPixels(const Image<uint16_t>& tones);
+
+// Returns true if the mask marks the pixel at a place in front of its camera.
+inline bool IsMarkedAt(const Image<uint8_t>& mask, const PairMap::Place& place) {
+  return place.w > 0 && place.u_px >= 0 && place.v_px >= 0 &&
+         place.u_px < static_cast<float>(mask.width()) &&
+         place.v_px < static_cast<float>(mask.height()) &&
+         mask.at(static_cast<int>(place.u_px), static_cast<int>(place.v_px)) != 0;
+}
+
 // Returns the sum of the absolute differences of green beside and above a pixel, which must not be
-// on the border.
+// on the border. It is 0 beside an outline, where the opacity changes: the place of an outline says
+// little about depth.
 int TextureAt(const Image<uint16_t>& tones, int x, int y);
 
 // Returns the camera of a working image: a pinhole with the calibration matrix and the size of the
@@ -39,8 +70,10 @@ class ToneCurve {
  public:
   explicit ToneCurve(const RadianceEncoding& encoding);
   uint8_t Tone(uint16_t radiance) const { return tones_[radiance]; }
+  uint16_t black() const { return black_; }  // 16-bit radiance of no light
 
  private:
+  uint16_t black_;
   std::vector<uint8_t> tones_;
 };
 
@@ -49,8 +82,13 @@ class ToneCurve {
 WorkingImage WorkingImageOf(const PinholeCamera& lf_camera, const LfPixels& pixels, int divisor,
                             const ToneCurve& curve);
 
+// Returns the light field with the opacities of its LF images, if they have some, in place of a
+// background.
+LightField WithOpacities(LightField light_field);
+
 // Loads an LF image and converts it.
-//   store  a store with Mosaics::kToRgb
+//   light_field  WithOpacities()
+//   store        of `light_field`, with Mosaics::kToRgb
 // Errors of store.Load().
 Result<WorkingImage> LoadWorkingImage(const LightField& light_field, const LfImageStore& store,
                                       LfImageId id, int divisor, const ToneCurve& curve);

@@ -5,7 +5,7 @@ namespace lf {
 namespace {
 
 size_t BytesOf(const WorkingImage& image) {
-  return image.light.size_bytes() + image.tones.size_bytes();
+  return image.light.size_bytes() + image.tones.size_bytes() + image.empty.size_bytes();
 }
 
 }  // namespace

@@ -12,18 +12,15 @@
 #include "lf/light_field/model/lf_pixels.h"
 #include "lf/light_field/model/light_field.h"
 #include "lf/storage/load/image_reading.h"
+#include "lf/storage/load/recorded_image.h"
 
 namespace lf {
 
-// Values of a picture of opacities [height][width][1]. A pixel of value 0 is masked and sends no
-// ray. A pixel of any other value o covers (o - 1) / kMostOpacity of the light behind it.
-inline constexpr uint16_t kMaskedOpacity = 0;
-inline constexpr uint16_t kMostOpacity = 65534;
-
-// Reads the opacities of the pixels `rect`, which lies in part.rect, from the file's alpha. Pixels
-// that the mask file or a bracket masks (ForEachMasked()) become kMaskedOpacity. Each alpha of 8 or
-// 16 bits has an opacity of its own, except that 65534 of 16 bits counts as opaque. Float alphas
-// are rounded to 16 bits; NaN is transparent. kInput: the mask file cannot be read.
+// Reads the opacities of the pixels `rect`, which lies in part.rect, from the file's alpha, as
+// RecordedImage::opacities. Pixels that the mask file or a bracket masks (ForEachMasked()) become
+// kMaskedOpacity. Each alpha of 8 or 16 bits has an opacity of its own, except that 65534 of 16
+// bits counts as opaque. Float alphas are rounded to 16 bits; NaN is transparent. kInput: the mask
+// file cannot be read.
 Result<Image<uint16_t>> ReadOpacities(const LightField& light_field, LfImageId id,
                                       const ImagePart& part, const ChannelUse& use,
                                       const PixelRect& rect);

@@ -71,8 +71,6 @@ float CutStored(const ImagePart& part, int channels, RecordedImage* image) {
   return largest;
 }
 
-constexpr uint16_t kOpaqueOpacity = kMostOpacity + 1;
-
 Result<RecordedImage> ReadMaskAsOpacities(const LightField& light_field, LfImageId id,
                                           const ImagePart& part, const ChannelUse& use,
                                           RecordedImage image) {

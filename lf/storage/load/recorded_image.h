@@ -16,6 +16,12 @@
 
 namespace lf {
 
+// Values of a picture of opacities [height][width][1]. A pixel of value 0 is masked and sends no
+// ray. A pixel of any other value o covers (o - 1) / kMostOpacity of the light behind it.
+inline constexpr uint16_t kMaskedOpacity = 0;
+inline constexpr uint16_t kMostOpacity = 65534;
+inline constexpr uint16_t kOpaqueOpacity = kMostOpacity + 1;
+
 struct RecordedImage {
   // Stored values of the pixels `rect`: grey, a mosaic, or R, G, B. Other channels are left out.
   CodecPixels pixels;
@@ -24,7 +30,7 @@ struct RecordedImage {
   StoredValues values = StoredValues::kUint8;
   PixelRect rect;
   Image<uint8_t> mask;  // [height][width]: 0 masked, 255 not masked; empty: no pixel is masked
-  // Opacity of each pixel (opacities.h), which replaces the mask if alpha is light. Empty: every
+  // Opacity of each pixel, which replaces the mask if alpha is light. Empty: every
   // pixel is opaque, or alpha is not light.
   Image<uint16_t> opacities;
   bool is_rounded = false;  // true if a float was no half float and was rounded to the nearest one

@@ -51,7 +51,7 @@ struct CodedImage {
   PixelRect rect;    // pixels of the LF image that are encoded; not empty
   std::string code;  // encoded colours, or mosaic (pixels/codec/lf_image_codec.h)
   std::string mask;  // encoded grey picture of the size of `rect`: a mask if it has 8 bits (0 is
-                     // masked), opacities if it has 16 (storage/load/opacities.h); empty: none
+                     // masked), opacities if it has 16 (storage/load/recorded_image.h); empty: none
   uint64_t source_bytes = 0;  // size of the files that the LF image was read from, for information
 };
 
