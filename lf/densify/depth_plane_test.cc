@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "lf/densify/matching_row.h"
 #include "lf/densify/semi_global.h"
 #include "lf/densify/test_world.h"
 
@@ -201,6 +202,83 @@ TEST(SweepDepths, FindsBothDepthsBesideAnOutline) {
   const std::vector<WorkingImage> images = NineImages(walls);
   const DepthPlane plane = SweepDepths(images[0], ViewsOf(images), kRange, 24);
   EXPECT_GT(RightShare(plane, images[0].camera, walls), 0.95);
+}
+
+// The images of 3 x 3 cameras of a disk, the middle one first.
+std::vector<WorkingImage> NineOfDisk(const Disk& disk) {
+  std::vector<WorkingImage> images{ImageOfDisk(CameraAt(0, 0), disk)};
+  for (int y = -1; y <= 1; ++y)
+    for (int x = -1; x <= 1; ++x)
+      if (x != 0 || y != 0)
+        images.push_back(ImageOfDisk(CameraAt(x * kBaseline, y * kBaseline), disk));
+  return images;
+}
+
+TEST(MatchingCosts, TransparentPixelsMatchNeitherColouredNorMaskedOnes) {
+  const uint16_t transparent[4] = {0, 0, 0, kTransparentTone}, black[4] = {0, 0, 0, 255};
+  std::vector<uint16_t> costs(1);
+  const auto cost = [&](const uint16_t* reference, const uint16_t* seen) {
+    WorkingImage view = ImageOfDisk(CameraAt(0, 0, 8, 8), {});
+    for (size_t i = 0; i < view.tones.pixels().size(); ++i)
+      view.tones.pixels()[i] = seen[i % LfPixels::kRgbLanes];
+    CompareRow(reference, 4, 4, 1, PairMap(), 1, {view.tones.row(0), 8, 8}, costs.data());
+    return costs[0];
+  };
+  const uint16_t masked[4] = {0, 0, 0, 0};
+  EXPECT_EQ(cost(transparent, transparent), 0);
+  EXPECT_EQ(cost(transparent, black), MatchingCosts::kMost);
+  EXPECT_EQ(cost(black, transparent), MatchingCosts::kMost);
+  EXPECT_EQ(cost(masked, transparent), MatchingCosts::kMost);
+}
+
+TEST(MatchingCosts, APixelIsNotWhereAnyViewIsEmpty) {
+  const std::vector<WorkingImage> images = NineOfDisk({});
+  const std::vector<SweepView> views = ViewsOf(images);
+  constexpr int kPlanes = 21;
+  MatchingCosts costs;
+  ComputeMatchingCosts(images[0], views, kRange, kPlanes, {0, 0, 96, 64}, &costs);
+  int carved = 0;
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 96; ++x)
+      for (int plane = 0; plane < kPlanes; ++plane) {
+        const auto z = static_cast<float>(kRange.least + plane * 0.05);
+        bool is_empty = false;
+        for (const SweepView& view : views)
+          is_empty |= IsMarkedAt(view.image->empty,
+                                 view.from_reference.At(static_cast<float>(x) + 0.5f,
+                                                        static_cast<float>(y) + 0.5f, z));
+        const bool is_carved = is_empty && !IsTransparent(&images[0].tones.at(x, y));
+        ASSERT_EQ(costs.At(x, y)[plane] == MatchingCosts::kCarved, is_carved) << x << " " << y;
+        carved += is_carved;
+      }
+  EXPECT_GT(carved, 500);
+}
+
+TEST(SweepDepths, FindsTheDepthOfADarkDiskByItsOutline) {
+  const Disk disk = {2, 0.3, 0, false};
+  const std::vector<WorkingImage> images = NineOfDisk(disk);
+  const DepthPlane plane = SweepDepths(images[0], ViewsOf(images), kRange, 24);
+  for (int y = 4; y < 60; ++y)
+    for (int x = 4; x < 92; ++x)
+      if (InsidePx(images[0].camera, disk, x, y) > 0) {
+        ASSERT_NEAR(kRange.Of(plane.at(x, y)), 0.5, 0.06) << x << " " << y;
+      }
+}
+
+TEST(DepthPlane, TransparentPixelsTakeTheDepthOfTheObjectBesideThem) {
+  const Disk disk;
+  const std::vector<WorkingImage> images = NineOfDisk(disk);
+  DepthPlane plane(96, 64);
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 96; ++x)
+      plane.at(x, y) =
+          kRange.NumberOf(IsTransparent(&images[0].tones.at(x, y)) ? 0.2 : 1 / disk.depth);
+  const std::vector<DepthView> itself(2, {&plane, PairMap()});
+  const Image<uint8_t> agreeing = CountAgreeing(plane, images[0].tones, itself, kRange, 0.05);
+  EXPECT_EQ(agreeing.at(48, 32), 2);
+  EXPECT_EQ(agreeing.at(4, 32), 0);
+  const DepthPlane filled = FillDisagreeing(plane, agreeing, 2, images[0].tones, kRange, 6);
+  EXPECT_EQ(filled.at(4, 32), kRange.NumberOf(1 / disk.depth));
 }
 
 TEST(DepthPlane, WrongDepthsAreFoundAndReplacedByThoseOfTheBackground) {

@@ -75,6 +75,86 @@ TEST(RecordedValues, PixelsWithoutLightAreMasked) {
   EXPECT_EQ(image.mask.at(2, 0), 255);
 }
 
+// Returns light over black whose opacity is different in each pixel of a row, from 0 to 1.
+Image<uint16_t> RowOfOpacities(const RadianceEncoding& encoding, double radiance) {
+  constexpr int kCount = 256;
+  Image<uint16_t> row(kCount, 1, LfPixels::kRgbLanes);
+  for (int x = 0; x < kCount; ++x) {
+    const double opacity = x / (kCount - 1.0);
+    for (int c = 0; c < 3; ++c)
+      row.at(x, 0, c) = QuantizeRadiance(encoding, opacity * radiance / (1 + c), 1);
+    row.at(x, 0, LfPixels::kRayLane) = static_cast<uint16_t>(1.5 + kMostOpacity * opacity);
+  }
+  return row;
+}
+
+// Compares light that is loaded over black and opacities with those that were stored
+// (storage/load/opacities.h).
+TEST(RecordedValues, LightAndOpacitiesComeBackUpToTheirSteps) {
+  for (const StoredValues values :
+       {StoredValues::kUint8, StoredValues::kUint16, StoredValues::kHalf})
+    for (const AlphaMeaning alpha : {AlphaMeaning::kStraight, AlphaMeaning::kPremultiplied}) {
+      RadianceEncoding encoding;
+      encoding.alpha = alpha;
+      encoding.background = {0, 1, 0};
+      encoding.pedestal = 2000;
+      encoding.max_radiance = 2;
+      constexpr double kGain = 2;
+      const Image<uint16_t> light = RowOfOpacities(encoding, 1.5);
+      const RecordedImage image =
+          RecordedValues(encoding, {values, PixelLayout::kRgb}).Of(light, kGain);
+      EXPECT_TRUE(image.mask.empty());
+      const int bits = values == StoredValues::kUint8 ? 8 : 16;
+      const std::vector<uint16_t> table = RadianceTable(encoding, bits, kGain);
+      for (int x = 0; x < light.width(); ++x) {
+        EXPECT_NEAR(image.opacities.at(x, 0), light.at(x, 0, LfPixels::kRayLane), 1) << x;
+        const double opacity = (image.opacities.at(x, 0) - 1.0) / kMostOpacity;
+        for (int c = 0; c < 3; ++c) {
+          double colour = 0, step = 2;
+          if (const auto* bytes = std::get_if<Image<uint8_t>>(&image.pixels)) {
+            const size_t stored = bytes->at(x, 0, c);
+            colour = table[stored];
+            step += stored < 255 ? table[stored + 1] - table[stored] : 0;
+          } else {
+            const uint16_t word = std::get<Image<uint16_t>>(image.pixels).at(x, 0, c);
+            colour = values == StoredValues::kHalf
+                         ? QuantizeRadiance(encoding, double{FloatOfOrdered(word)}, kGain)
+                         : table[word];
+            step += values == StoredValues::kHalf ? 0x1p-11 * (colour - encoding.pedestal) : 0;
+          }
+          const double share = alpha == AlphaMeaning::kStraight ? opacity : 1;
+          const double loaded = encoding.pedestal + share * (colour - encoding.pedestal);
+          EXPECT_NEAR(loaded, light.at(x, 0, c), share * step + 1)
+              << NameOf(alpha) << " " << bits << " " << x << " " << c;
+        }
+      }
+    }
+}
+
+TEST(RecordedValues, MaskedPixelsStayDifferentFromTransparentOnes) {
+  RadianceEncoding encoding;
+  encoding.alpha = AlphaMeaning::kStraight;
+  Image<uint16_t> light = Row({100, 200, 300});
+  light.at(0, 0, LfPixels::kRayLane) = kOpaqueOpacity;
+  for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane) light.at(1, 0, lane) = 0;
+  const RecordedImage image =
+      RecordedValues(encoding, {StoredValues::kUint8, PixelLayout::kRgb}).Of(light);
+  EXPECT_TRUE(image.mask.empty());
+  EXPECT_EQ(image.opacities.at(0, 0), kOpaqueOpacity);
+  EXPECT_EQ(image.opacities.at(1, 0), kMaskedOpacity);
+  EXPECT_EQ(image.opacities.at(2, 0), 1) << "transparent";
+}
+
+TEST(RecordedValues, OpaqueImagesHaveNoOpacities) {
+  RadianceEncoding encoding;
+  encoding.alpha = AlphaMeaning::kPremultiplied;
+  Image<uint16_t> light = Row({100, 200, 300});
+  for (int x = 0; x < 3; ++x) light.at(x, 0, LfPixels::kRayLane) = kOpaqueOpacity;
+  EXPECT_TRUE(RecordedValues(encoding, {StoredValues::kUint8, PixelLayout::kRgb})
+                  .Of(light)
+                  .opacities.empty());
+}
+
 // Returns a light field whose LF cameras have these gains and this falloff in the corners.
 LightField FieldOf(const std::vector<ChannelGains>& gains, double corner) {
   LightField field;

@@ -85,8 +85,9 @@ class SourceView {
           place.u_px < static_cast<float>(plane.width()) &&
           place.v_px < static_cast<float>(plane.height())))
       return {};
-    const float there = DepthAt(static_cast<int>(place.u_px), static_cast<int>(place.v_px));
-    return {true, place.u_px, place.v_px, (there - z / place.w) * per_tolerance};
+    const std::optional<float> there = DepthSeenAt(place);
+    const float error = there ? (*there - z / place.w) * per_tolerance : kSeenThrough;
+    return {true, place.u_px, place.v_px, error};
   }
   bool Sample(const Seen& seen, float colour[kLanes]) const {
     return SampleBicubic(source_.image->light, seen.u_px, seen.v_px, colour);
@@ -98,8 +99,26 @@ class SourceView {
   }
 
  private:
+  static constexpr float kSeenThrough = -1e6f;
+
+  bool ShowsNothing(int x, int y) const { return IsTransparent(&source_.image->tones.at(x, y)); }
   float DepthAt(int x, int y) const {
     return first_ + static_cast<float>(source_.plane->at(x, y)) * step_;
+  }
+  // Returns the depth of the nearest pixel. A transparent pixel has none: it stands for the outline
+  // among the four pixels around the place. Returns nullopt if there is no outline.
+  std::optional<float> DepthSeenAt(const PairMap::Place& place) const {
+    const int x = static_cast<int>(place.u_px), y = static_cast<int>(place.v_px);
+    if (!HasEmpty() || !ShowsNothing(x, y)) return DepthAt(x, y);
+    const DepthPlane& plane = *source_.plane;
+    const int beside =
+        std::clamp(place.u_px - static_cast<float>(x) < 0.5f ? x - 1 : x + 1, 0, plane.width() - 1);
+    const int below = std::clamp(place.v_px - static_cast<float>(y) < 0.5f ? y - 1 : y + 1, 0,
+                                 plane.height() - 1);
+    if (!ShowsNothing(beside, y)) return DepthAt(beside, y);
+    if (!ShowsNothing(x, below)) return DepthAt(x, below);
+    if (!ShowsNothing(beside, below)) return DepthAt(beside, below);
+    return std::nullopt;
   }
 
   const Source source_;
@@ -279,24 +298,44 @@ class Synthesizer {
   bool ColourAt(int x, int y, float depth, float result[kLanes], float* spread) const {
     // The more sources agree on the depth, the less the others count.
     constexpr float kFewVotes = 0.02f;
-    float agreed[kLanes] = {}, agreed_sum = 0, all[kLanes] = {}, all_sum = 0;
-    std::array<WeighedColour, kMostSources> colours;
-    size_t colour_count = 0;
+    // If sources with so much of the weight are opaque, a small error of the depth moved the others
+    // to an outline.
+    constexpr float kMostly = 0.7f, kNearlyOpaque = 0.99f;
+    struct Sampled {
+      float colour[kLanes];
+      float weight, agreement, opacity;
+    };
+    std::array<Sampled, kMostSources> sampled;
+    size_t count = 0;
+    float opaque = 0, whole = 0;
     for (const SourceView& view : views_) {
       const SourceView::Seen seen = view.See(static_cast<float>(x) + 0.5f,
                                              static_cast<float>(y) + 0.5f, depth, per_tolerance_);
-      float colour[kLanes];
-      if (!seen.is_inside || !view.Sample(seen, colour)) continue;
-      const float agreement = Agreement(seen.error), weight = view.weight() * agreement;
+      Sampled& sample = sampled[count];
+      if (!seen.is_inside || !view.Sample(seen, sample.colour)) continue;
+      sample.weight = view.weight();
+      sample.agreement = Agreement(seen.error);
+      sample.opacity = OpacityOfLane(sample.colour[kColours]);
+      whole += sample.weight;
+      if (sample.opacity > kNearlyOpaque) opaque += sample.weight;
+      ++count;
+    }
+    const bool is_opaque = opaque >= kMostly * whole;
+    float agreed[kLanes] = {}, agreed_sum = 0, all[kLanes] = {}, all_sum = 0;
+    std::array<WeighedColour, kMostSources> colours;
+    size_t colour_count = 0;
+    for (const Sampled& sample : std::span(sampled.data(), count)) {
+      if (is_opaque && sample.opacity <= kNearlyOpaque) continue;
+      const float weight = sample.weight * sample.agreement;
       // The part of the source's pixel that is transparent agrees that nothing is at the place.
-      const float through = view.weight() * (1 - agreement) * (1 - OpacityOfLane(colour[kColours]));
+      const float through = sample.weight * (1 - sample.agreement) * (1 - sample.opacity);
       for (int c = 0; c < kLanes; ++c) {
-        agreed[c] += weight * colour[c] + through * nothing_[static_cast<size_t>(c)];
-        all[c] += view.weight() * colour[c];
+        agreed[c] += weight * sample.colour[c] + through * nothing_[static_cast<size_t>(c)];
+        all[c] += sample.weight * sample.colour[c];
       }
-      colours[colour_count++] = {{colour[0], colour[1], colour[2]}, weight};
+      colours[colour_count++] = {{sample.colour[0], sample.colour[1], sample.colour[2]}, weight};
       agreed_sum += weight + through;
-      all_sum += view.weight();
+      all_sum += sample.weight;
     }
     if (!(all_sum > 0)) return false;
     if (spread != nullptr) *spread = SpreadOf({colours.data(), colour_count});

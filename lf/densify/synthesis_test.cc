@@ -137,5 +137,88 @@ TEST(Synthesis, PixelsThatNoSourceShowsAreMasked) {
   EXPECT_GT(shown, 1000);
 }
 
+// Four cameras that see a disk in front of nothing, with true depths; those of transparent pixels
+// are wrong.
+struct FourOfDisk {
+  Disk disk;
+  std::vector<WorkingImage> images;
+  std::vector<DepthPlane> planes;
+  std::vector<Source> sources;
+
+  explicit FourOfDisk(const Disk& of_disk) : disk(of_disk) {
+    for (const double y : {-0.1, 0.1})
+      for (const double x : {-0.1, 0.1}) {
+        images.push_back(ImageOfDisk(CameraAt(x, y), disk));
+        DepthPlane plane(images.back().width(), images.back().height());
+        for (int v = 0; v < plane.height(); ++v)
+          for (int u = 0; u < plane.width(); ++u)
+            plane.at(u, v) = IsTransparent(&images.back().tones.at(u, v))
+                                 ? kScene.NumberOf(u % 2 == 0 ? 1.1 : 0.1)
+                                 : kScene.NumberOf(1 / disk.depth);
+        planes.push_back(std::move(plane));
+      }
+    for (size_t i = 0; i < images.size(); ++i) sources.push_back({&images[i], &planes[i], 0.25f});
+  }
+
+  // Expects the disk with its outline, and nothing around it.
+  void ExpectDiskAt(const PinholeCamera& camera) const {
+    const VirtualImage image = Synthesize(camera, sources, kScene, kTolerance);
+    const WorkingImage expected = ImageOfDisk(camera, disk);
+    EXPECT_GT(PsnrInside(image.light, expected.light, 4), 38);
+    double most = 0;
+    for (int y = 4; y < image.light.height() - 4; ++y)
+      for (int x = 4; x < image.light.width() - 4; ++x) {
+        const uint16_t* pixel = &image.light.at(x, y);
+        const double inside_px = InsidePx(camera, disk, x, y);
+        most = std::max(most, std::abs(static_cast<double>(pixel[3]) - expected.light.at(x, y, 3)));
+        if (inside_px > 3) {
+          ASSERT_EQ(pixel[3], kOpaqueOpacity) << x << " " << y;
+        }
+        if (inside_px < -2) {
+          for (int c = 0; c < 4; ++c) ASSERT_EQ(pixel[c], c < 3 ? 0 : 1) << x << " " << y;
+        }
+      }
+    EXPECT_LT(most, 0.25 * kMostOpacity);
+  }
+};
+
+TEST(SynthesisOfOpacity, ShowsADiskInFrontOfNothing) {
+  const FourOfDisk four({});
+  four.ExpectDiskAt(CameraAt(0.013, -0.021));
+  four.ExpectDiskAt(CameraAt(-0.06, 0.04));
+}
+
+TEST(SynthesisOfOpacity, AnOutlineHasTheColourOfTheObject) {
+  const FourOfDisk four({2, 0.3, 0.6, false});
+  const VirtualImage image = Synthesize(CameraAt(0.013, -0.021), four.sources, kScene, kTolerance);
+  int partly = 0;
+  for (int y = 0; y < image.light.height(); ++y)
+    for (int x = 0; x < image.light.width(); ++x) {
+      const uint16_t* pixel = &image.light.at(x, y);
+      const double opacity = (pixel[3] - 1.0) / kMostOpacity;
+      if (opacity > 0 && opacity < 1) ++partly;
+      for (int c = 0; c < 3; ++c)
+        ASSERT_NEAR(pixel[c], 0.6 * 65535 * opacity, 3) << x << " " << y << " " << opacity;
+    }
+  EXPECT_GT(partly, 50);
+}
+
+TEST(SynthesisOfOpacity, SilhouettesOfOtherSourcesRemoveWrongDepths) {
+  FourOfDisk four({});
+  // At this depth the disk would be 10 px beside its place.
+  for (uint16_t& number : four.planes[0].pixels()) number = kScene.NumberOf(1.1);
+  four.ExpectDiskAt(CameraAt(0.013, -0.021));
+}
+
+TEST(SynthesisOfOpacity, MaskedPixelsOfASourceAreUnknownAndRemoveNothing) {
+  FourOfDisk four({});
+  WorkingImage& image = four.images[1];
+  std::fill(image.light.pixels().begin(), image.light.pixels().end(), uint16_t{0});
+  std::fill(image.tones.pixels().begin(), image.tones.pixels().end(), uint16_t{0});
+  image.empty = EmptyPixels(image.tones);
+  EXPECT_TRUE(image.empty.empty());
+  four.ExpectDiskAt(CameraAt(0.013, -0.021));
+}
+
 }  // namespace
 }  // namespace lf

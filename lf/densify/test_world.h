@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A world of textured walls whose images are known exactly, for tests.
+// A world of textured walls, or of a disk with nothing around it, whose images are known exactly,
+// for tests.
 #pragma once
 
 #include <algorithm>
@@ -56,6 +57,49 @@ inline WorkingImage ImageOfWalls(const PinholeCamera& camera, const std::vector<
       image.light.at(x, y, 3) = kOpaqueOpacity;
       image.tones.at(x, y, 3) = 255;
     }
+  return image;
+}
+
+// A disk at z = depth around x = y = 0, in front of nothing. Cameras look along z.
+struct Disk {
+  double depth = 2;
+  double radius = 0.3;
+  double brightness = 1;
+  bool has_texture = true;
+};
+
+// Returns by how many pixels the centre of a pixel is inside the outline of the disk; below 0 if it
+// is outside.
+inline double InsidePx(const PinholeCamera& camera, const Disk& disk, int x, int y) {
+  const Ray ray = RayOfPixel(camera, x + 0.5, y + 0.5);
+  const Vec3 at = ray.At((disk.depth - ray.origin.z()) / ray.direction.z());
+  return (disk.radius - at.head<2>().norm()) * camera.intrinsics.fx_px / disk.depth;
+}
+
+// Returns what a camera records. The outline is as soft as that of pixels that show areas.
+inline WorkingImage ImageOfDisk(const PinholeCamera& camera, const Disk& disk) {
+  constexpr double kPixelsPerDetail = 5;
+  const Intrinsics& k = camera.intrinsics;
+  WorkingImage image{camera, Image<uint16_t>(k.width_px, k.height_px, LfPixels::kRgbLanes),
+                     Image<uint16_t>(k.width_px, k.height_px, LfPixels::kRgbLanes)};
+  const double scale = k.fx_px / disk.depth / kPixelsPerDetail;
+  for (int y = 0; y < k.height_px; ++y)
+    for (int x = 0; x < k.width_px; ++x) {
+      const double opacity = std::clamp(0.5 + InsidePx(camera, disk, x, y), 0.0, 1.0);
+      const Ray ray = RayOfPixel(camera, x + 0.5, y + 0.5);
+      const Vec3 at = ray.At((disk.depth - ray.origin.z()) / ray.direction.z());
+      for (uint64_t c = 0; c < 3; ++c) {
+        const double detail =
+            disk.has_texture ? ValueNoise(at.x() * scale, at.y() * scale, 1 + c) : 1;
+        const double value = opacity * disk.brightness * detail;
+        image.light.at(x, y, static_cast<int>(c)) = static_cast<uint16_t>(65535 * value + 0.5);
+        image.tones.at(x, y, static_cast<int>(c)) = static_cast<uint16_t>(255 * value + 0.5);
+      }
+      image.light.at(x, y, 3) = static_cast<uint16_t>(1.5 + kMostOpacity * opacity);
+      image.tones.at(x, y, 3) =
+          static_cast<uint16_t>(kTransparentTone + (255 - kTransparentTone) * opacity + 0.5);
+    }
+  image.empty = EmptyPixels(image.tones);
   return image;
 }
 

@@ -109,7 +109,7 @@ Image<uint8_t> EmptyPixels(const Image<uint16_t>& tones) {
 }
 
 int TextureAt(const Image<uint16_t>& tones, int x, int y) {
-  constexpr int kSameOpacity = 16;
+  constexpr int kSameOpacity = 4;
   const int opacity = tones.at(x, y, LfPixels::kRayLane);
   for (const uint16_t beside :
        {tones.at(x - 1, y, LfPixels::kRayLane), tones.at(x + 1, y, LfPixels::kRayLane),
