@@ -254,6 +254,23 @@ TEST(MatchingCosts, APixelIsNotWhereAnyViewIsEmpty) {
   EXPECT_GT(carved, 500);
 }
 
+TEST(ChoosePlanes, TheDepthMayStepAtTheOutlineOfADarkObject) {
+  constexpr int kWidth = 8, kPlanes = 32, kLeft = 10, kRight = 25;
+  MatchingCosts costs{{0, 0, kWidth, 1}, kPlanes, kPlanes, {}};
+  costs.costs.resize(size_t{kWidth} * kPlanes);
+  Image<uint16_t> tones(kWidth, 1, LfPixels::kRgbLanes);
+  const auto is_left = [](int x) { return x < kWidth / 2; };
+  for (int x = 0; x < kWidth; ++x) {
+    uint8_t* of_pixel = costs.costs.data() + size_t{kPlanes} * static_cast<size_t>(x);
+    std::fill_n(of_pixel, kPlanes, static_cast<uint8_t>(is_left(x) ? 200 : 20));
+    of_pixel[is_left(x) ? kLeft : kRight] = 0;
+    tones.at(x, 0, LfPixels::kRayLane) = is_left(x) ? 255 : kTransparentTone;
+  }
+  const ChosenPlanes chosen = ChoosePlanes(costs, tones, false);
+  for (int x = 0; x < kWidth; ++x)
+    EXPECT_NEAR(chosen.place.at(x, 0), is_left(x) ? kLeft : kRight, 0.5) << x;
+}
+
 TEST(SweepDepths, FindsTheDepthOfADarkDiskByItsOutline) {
   const Disk disk = {2, 0.3, 0, false};
   const std::vector<WorkingImage> images = NineOfDisk(disk);

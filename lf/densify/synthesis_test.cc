@@ -210,6 +210,20 @@ TEST(SynthesisOfOpacity, SilhouettesOfOtherSourcesRemoveWrongDepths) {
   four.ExpectDiskAt(CameraAt(0.013, -0.021));
 }
 
+TEST(SynthesisOfOpacity, ASmallErrorOfDepthsLeavesTheInsideOpaque) {
+  FourOfDisk four({2, 0.3, 0.6, false});
+  for (size_t i = 0; i < four.planes.size(); ++i)
+    for (uint16_t& number : four.planes[i].pixels()) number = kScene.NumberOf(0.57);
+  const PinholeCamera camera = CameraAt(0, 0);
+  const VirtualImage image = Synthesize(camera, four.sources, kScene, kTolerance);
+  int partly = 0;
+  for (int y = 0; y < image.light.height(); ++y)
+    for (int x = 0; x < image.light.width(); ++x)
+      if (InsidePx(camera, four.disk, x, y) > 0.8 && image.light.at(x, y, 3) < 0.98 * 65535)
+        ++partly;
+  EXPECT_LT(partly, 44);
+}
+
 TEST(SynthesisOfOpacity, MaskedPixelsOfASourceAreUnknownAndRemoveNothing) {
   FourOfDisk four({});
   WorkingImage& image = four.images[1];

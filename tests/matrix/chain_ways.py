@@ -139,11 +139,7 @@ def _is_of_another_capture(chain):
         # The LF cameras of `synth` are so far apart that the direct way has double edges.
         return chain.flaws == "synth" or chain.reader in (
             "lfpreprocessor --plan", "lfvisualizer --text", "lfvisualizer --export", "lfimport", "lfexample")
-    if "views" not in chain.writer:
-        return False
-    # Views are composited, so that they can be densified where their light field cannot.
-    is_composited = chain.reader == "lfdensify" and chain.flaws in ("light", "opacity")
-    return is_composited or chain.reader in ("lfvisualizer --text", "lfvisualizer --export")
+    return "views" in chain.writer and chain.reader in ("lfvisualizer --text", "lfvisualizer --export")
 
 
 def _direct_path(ways, chain, written):
