@@ -176,6 +176,7 @@ struct FourOfDisk {
         }
         if (inside_px < -2) {
           for (int c = 0; c < 4; ++c) ASSERT_EQ(pixel[c], c < 3 ? 0 : 1) << x << " " << y;
+          ASSERT_EQ(image.trust.at(x, y), LfPixels::kTrusted) << x << " " << y;
         }
       }
     EXPECT_LT(most, 0.25 * kMostOpacity);
