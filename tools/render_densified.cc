@@ -81,6 +81,9 @@ Result<DensifiedFilm> DensifyForFilm(LightField light_field, const CameraPath& p
   film.missing = {report.skipped.size(), report.asked_count(), MissingText(report, densify),
                   "once they are mended, render again with --overwrite"};
   LF_ASSIGN_OR_RETURN(film.light_field, OpenLightField(densify.store, OpenOptions{}));
+  // The store may have been made for frames over another background.
+  film.light_field.encoding.background = light_field.encoding.background;
+  film.light_field.encoding.keeps_opacity = light_field.encoding.keeps_opacity;
   return film;
 }
 

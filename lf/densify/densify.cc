@@ -305,6 +305,10 @@ Result<void> Densifier::OpenWriter() {
   if (options_.resume && IsPackedStore(options_.store) &&
       !PackedStoreWriter::IsUnfinished(options_.store)) {
     report_.was_there = true;
+    // Virtual LF images do not depend on the background that the store was made with.
+    LF_ASSIGN_OR_RETURN(const PackedStoreFacts facts, ReadPackedStore(options_.store));
+    all_.encoding.background = facts.light_field.encoding.background;
+    all_.encoding.keeps_opacity = facts.light_field.encoding.keeps_opacity;
     const Result<void> same = CheckIsOfPlan(options_.store, all_, plan, true);
     if (same) return {};
     return Error{same.error().kind, same.error().message + ", or replace it with {overwrite}"};

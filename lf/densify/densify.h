@@ -31,7 +31,8 @@ struct DensifyOptions {
   DensifyChoices choices;
   size_t memory_bytes = size_t{2} << 30;  // for LF images that are kept in memory
   // True: resumes an unfinished store, or begins a new one if there is none. If the store is
-  // complete, it must match the options, and is kept.
+  // complete, it must match the options and the light field, except for its background, and is
+  // kept.
   bool resume = false;
   bool overwrite = false;   // true: replaces an existing store, unfinished or complete
   bool strict = false;      // true: an LF image that cannot be read is an error

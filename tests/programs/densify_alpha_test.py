@@ -204,6 +204,13 @@ class DensifyAlphaTest(ProgramTestCase):
         other = self.folder / "other"
         self.succeeds(RENDERER, film / "densified.lfs", scene.path, "-o", other, *options)
         self.assertEqual((film / "frame_0001.exr").read_bytes(), (other / "frame_0001.exr").read_bytes())
+        # The store is used again for frames over another background.
+        before = (film / "densified.lfs").stat()
+        options = ("--no-guard", "--background", GREEN, "--no-contact-sheet", "-q")
+        self.succeeds(RENDERER, scene.field, scene.path, "-o", film, "--densify", *options)
+        self.assertEqual((film / "densified.lfs").stat(), before)
+        self.succeeds(RENDERER, film / "densified.lfs", scene.path, "-o", other, *options)
+        self.assertEqual((film / "frame_0001.exr").read_bytes(), (other / "frame_0001.exr").read_bytes())
 
     # Equal bits
 
