@@ -18,6 +18,7 @@
 #include "lf/densify/recorded_values.h"
 #include "lf/densify/stored_planes.h"
 #include "lf/densify/synthesis.h"
+#include "lf/densify/watched_loop.h"
 #include "lf/densify/working_images.h"
 #include "lf/light_field/model/keep_images.h"
 #include "lf/storage/load/measure_footprint.h"
@@ -109,8 +110,12 @@ class Densifier {
   // Makes kind_ hold the values of a recorded LF image.
   void Hold(const StoredKind& kind);
   Result<Loaded> Load(std::span<const uint32_t> ids);
-  // Calls body(i) for each i on all threads, until a call fails or the user interrupts, and shows
-  // progress.
+  // Returns a watch of a step, which shows progress.
+  Watch WatchOf(const char* step) const;
+  // The error of a user who interrupted a call whose result must therefore not be used.
+  Result<void> CheckNotInterrupted() const;
+  // Calls body(i) for each i on all threads, until a call fails or the user interrupts. Commits
+  // what was written.
   Result<void> ForEach(const char* step, size_t count,
                        const std::function<Result<void>(size_t)>& body);
   PinholeCamera CameraOf(uint32_t id) const {
@@ -137,31 +142,26 @@ class Densifier {
   StoredKind kind_;  // kind that holds the values of all recorded LF images
 };
 
+Watch Densifier::WatchOf(const char* step) const {
+  Watch watch{step, options_.interrupted};
+  if (progress_)
+    watch.tell = [=, this](size_t done, size_t count) { progress_({step, done, count}); };
+  return watch;
+}
+
+// The loop that makes the call returns an error of its own.
+Result<void> Densifier::CheckNotInterrupted() const {
+  if (IsSet(options_.interrupted)) return Error{ErrorKind::kInterrupted, "interrupted"};
+  return {};
+}
+
 Result<void> Densifier::ForEach(const char* step, size_t count,
                                 const std::function<Result<void>(size_t)>& body) {
-  std::optional<Error> error;
-  size_t done = 0;
-  pool_.ForEach(count, [&](size_t i) {
-    {
-      const std::lock_guard lock(mutex_);
-      if (error) return;
-      if (options_.interrupted && *options_.interrupted) {
-        error = Error{ErrorKind::kInterrupted,
-                      fmt::format("interrupted after {} of {} ({}): {{resume}} continues", done,
-                                  count, step)};
-        return;
-      }
-    }
-    const Result<void> result = body(i);
-    const std::lock_guard lock(mutex_);
-    if (!result && !error) error = result.error();
-    ++done;
-    if (progress_) progress_({step, done, count});
-  });
-  if (!error) return {};
+  const Result<void> result = ForEachWatched(pool_, count, WatchOf(step), body);
   // Earlier work is committed, unless the disk or the memory failed.
-  if (writer_ && error->kind != ErrorKind::kOutput) LF_RETURN_IF_ERROR(writer_->Commit());
-  return *error;
+  if (!result && writer_ && result.error().kind != ErrorKind::kOutput)
+    LF_RETURN_IF_ERROR(writer_->Commit());
+  return result;
 }
 
 Result<Densifier::Loaded> Densifier::Load(std::span<const uint32_t> ids) {
@@ -250,7 +250,8 @@ Result<void> Densifier::CheckPoses() {
   constexpr size_t kMostChecked = 400;
   if (light_field_.size() > kMostChecked) return {};
   LF_ASSIGN_OR_RETURN(const std::vector<ComparedPair> pairs,
-                      ComparePairs(light_field_, *store_, plan_.plane.points, plan_.range, pool_));
+                      ComparePairs(light_field_, *store_, plan_.plane.points, plan_.range, pool_,
+                                   WatchOf("comparing pairs")));
   const std::vector<std::vector<uint32_t>> groups = ContradictingGroups(light_field_.size(), pairs);
   if (groups.empty()) return {};
   std::vector<std::string> source = {FileArgument(options_.source_name)};
@@ -262,7 +263,8 @@ Result<void> Densifier::CheckPoses() {
 }
 
 Result<void> Densifier::Test() {
-  LF_ASSIGN_OR_RETURN(report_.tests, TestByLeavingOut(light_field_, *store_, plan_, pool_));
+  LF_ASSIGN_OR_RETURN(report_.tests,
+                      TestByLeavingOut(light_field_, *store_, plan_, pool_, WatchOf("testing")));
   if (report_.tests.empty()) {
     LogWarning(
         "no LF camera is surrounded by others, so that virtual LF images cannot be tested against "
@@ -336,7 +338,8 @@ Result<void> Densifier::Sweep(uint32_t id) {
   const ThreadCpuTimer timer;
   std::vector<SweepView> views;
   for (size_t k = 1; k < loaded.size(); ++k) views.push_back(ViewFrom(*loaded[0], *loaded[k]));
-  depths_[id] = SweepDepths(*loaded[0], views, plan_.range, plan_.planes);
+  depths_[id] = SweepDepths(*loaded[0], views, plan_.range, plan_.planes, options_.interrupted);
+  LF_RETURN_IF_ERROR(CheckNotInterrupted());
   {
     const std::lock_guard lock(mutex_);
     report_.sweep_cpu_s += static_cast<double>(timer.Nanoseconds()) * 1e-9;
@@ -359,14 +362,15 @@ Result<DepthPlane> Densifier::Refined(uint32_t id, double* agreeing_count) {
   for (const uint32_t other : plan_.compare_with[id])
     if (!depths_[other].empty())
       views.push_back({&depths_[other], MapBetween(CameraOf(id), CameraOf(other))});
-  const Image<uint8_t> agreeing = CountAgreeing(depths_[id], views, plan_.range, plan_.tolerance);
+  const Image<uint8_t> agreeing =
+      CountAgreeing(depths_[id], views, plan_.range, plan_.tolerance, options_.interrupted);
   const int wanted = std::min(kWanted, static_cast<int>(views.size()));
   *agreeing_count =
       static_cast<double>(std::count_if(agreeing.pixels().begin(), agreeing.pixels().end(),
                                         [&](uint8_t count) { return count >= wanted; }));
   LF_ASSIGN_OR_RETURN(const auto image, images_->Get(LfImageId{id}));
   return FillDisagreeing(depths_[id], agreeing, wanted, image->tones, plan_.range,
-                         plan_.shift_per_depth_px);
+                         plan_.shift_per_depth_px, options_.interrupted);
 }
 
 Result<void> Densifier::RefineAll() {
@@ -390,9 +394,10 @@ Result<void> Densifier::RefineAll() {
   return ForEach("storing depths", plan_.sources.size(), [&](size_t i) -> Result<void> {
     const LfImageId id{plan_.sources[i]};
     if (writer_->HasPlane(id, PlaneKind::kDisparity)) return {};
-    return writer_->AddPlane(id, PlaneKind::kDisparity,
-                             AsRecorded(depths_[id.value], light_field_.Camera(id).intrinsics,
-                                        options_.choices.divisor));
+    const DepthPlane recorded = AsRecorded(depths_[id.value], light_field_.Camera(id).intrinsics,
+                                           options_.choices.divisor, options_.interrupted);
+    LF_RETURN_IF_ERROR(CheckNotInterrupted());
+    return writer_->AddPlane(id, PlaneKind::kDisparity, recorded);
   });
 }
 
@@ -425,7 +430,9 @@ Result<void> Densifier::AddVirtual(const RecordedValues& values, size_t i) {
   for (size_t k = 0; k < ids.size(); ++k)
     sources.push_back(
         {loaded[k].get(), &depths_[ids[k]], static_cast<float>(wanted.sources[k].weight)});
-  const VirtualImage image = Synthesize(wanted.camera, sources, plan_.range, plan_.tolerance);
+  const VirtualImage image =
+      Synthesize(wanted.camera, sources, plan_.range, plan_.tolerance, options_.interrupted);
+  LF_RETURN_IF_ERROR(CheckNotInterrupted());
   {
     const std::lock_guard lock(mutex_);
     const auto pixels = static_cast<double>(image.light.width()) * image.light.height();
@@ -447,7 +454,8 @@ Result<DensifyReport> Densifier::Run() {
   LF_RETURN_IF_ERROR(CheckCount(light_field_));
   images_ = std::make_unique<WorkingImages>(light_field_, *store_, options_.choices.divisor,
                                             options_.memory_bytes);
-  LF_ASSIGN_OR_RETURN(plan_, PlanDensify(light_field_, *store_, options_.choices, pool_));
+  LF_ASSIGN_OR_RETURN(plan_, PlanDensify(light_field_, *store_, options_.choices, pool_,
+                                         WatchOf("finding the range")));
   report_.dense = plan_.dense;
   report_.recorded_count = light_field_.size();
   report_.virtual_count = plan_.virtual_cameras.size();

@@ -9,6 +9,7 @@
 #include "lf/core/large_vector.h"
 #include "lf/densify/inverse_depths.h"
 #include "lf/densify/pair_map.h"
+#include "lf/densify/watched_loop.h"
 #include "lf/densify/working_image.h"
 
 namespace lf {
@@ -47,9 +48,10 @@ struct MatchingCosts {
 // one side of the reference camera, for eight sides. A pixel that is hidden from the views on one
 // side, because it lies beside the outline of a nearer object, is seen by those on the other (Kang,
 // Szeliski and Chai, "Handling occlusions in dense multi-view stereo", CVPR 2001).
-//   views  one or more
+//   views        one or more
+//   interrupted  once it is set, the result must not be used
 void ComputeMatchingCosts(const WorkingImage& reference, std::span<const SweepView> views,
                           const InverseDepths& range, int planes, const PixelRect& rect,
-                          MatchingCosts* result);
+                          MatchingCosts* result, InterruptFlag interrupted = nullptr);
 
 }  // namespace lf

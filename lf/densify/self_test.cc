@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <mutex>
-#include <optional>
 #include <utility>
 
 #include "lf/core/median.h"
@@ -80,7 +78,8 @@ double AngleDeg(const PinholeCamera& first, const PinholeCamera& second, double 
 // Tests of one light field.
 class Tester {
  public:
-  Tester(const LightField& light_field, const LfImageStore& store, const DensifyPlan& plan)
+  Tester(const LightField& light_field, const LfImageStore& store, const DensifyPlan& plan,
+         InterruptFlag interrupted)
       : light_field_(light_field),
         plan_(plan),
         divisor_(std::max(1, light_field.intrinsics.front().width_px / kTestedWidth)),
@@ -88,7 +87,8 @@ class Tester {
         images_(light_field, store, divisor_, std::numeric_limits<size_t>::max()),
         planes_(PlanesFor(plan.ShiftPx() * plan.divisor / divisor_)),
         tolerance_(
-            ToleranceFor(plan.range, planes_, plan.shift_per_depth_px * plan.divisor / divisor_)) {}
+            ToleranceFor(plan.range, planes_, plan.shift_per_depth_px * plan.divisor / divisor_)),
+        interrupted_(interrupted) {}
 
   // Tests an LF image that others surround.
   Result<LeftOut> Test(uint32_t left_out);
@@ -108,6 +108,7 @@ class Tester {
   WorkingImages images_;
   const int planes_;
   const double tolerance_;
+  const InterruptFlag interrupted_;
 };
 
 Result<Tester::Group> Tester::SweepWithout(uint32_t left_out, std::span<const uint32_t> wanted) {
@@ -122,7 +123,7 @@ Result<Tester::Group> Tester::SweepWithout(uint32_t left_out, std::span<const ui
       views.push_back(ViewFrom(*reference, *image));
       others.push_back(std::move(image));
     }
-    group.planes.push_back(SweepDepths(*reference, views, plan_.range, planes_));
+    group.planes.push_back(SweepDepths(*reference, views, plan_.range, planes_, interrupted_));
     group.images.push_back(std::move(reference));
   }
   return group;
@@ -144,7 +145,7 @@ Result<LeftOut> Tester::Test(uint32_t left_out) {
     for (size_t i = 0; i < ids.size(); ++i)
       sources.push_back(
           {group.images[i].get(), &planes[i], static_cast<float>(neighbours[i].weight / sum)});
-    return Synthesize(recorded->camera, sources, plan_.range, tolerance_).light;
+    return Synthesize(recorded->camera, sources, plan_.range, tolerance_, interrupted_).light;
   };
   const Image<float> truth = SmoothTones(recorded->light, curve_);
   LeftOut result{light_field_.image_names[left_out]};
@@ -167,25 +168,18 @@ Result<LeftOut> Tester::Test(uint32_t left_out) {
 
 Result<std::vector<LeftOut>> TestByLeavingOut(const LightField& light_field,
                                               const LfImageStore& store, const DensifyPlan& plan,
-                                              ThreadPool& pool) {
+                                              ThreadPool& pool, const Watch& watch) {
   std::vector<uint32_t> inner;
   for (uint32_t i = 0; i < light_field.size(); ++i)
     if (NeighboursWithout(plan.plane.points, i).size() >= 3) inner.push_back(i);
   const size_t count = std::min(kMostTests, inner.size());
   std::vector<LeftOut> tests(count);
-  Tester tester(light_field, store, plan);
-  std::mutex mutex;
-  std::optional<Error> error;
-  pool.ForEach(count, [&](size_t i) {
+  Tester tester(light_field, store, plan, watch.interrupted);
+  LF_RETURN_IF_ERROR(ForEachWatched(pool, count, watch, [&](size_t i) -> Result<void> {
     const size_t chosen = count == 1 ? inner.size() / 2 : i * (inner.size() - 1) / (count - 1);
-    auto result = tester.Test(inner[chosen]);
-    const std::lock_guard lock(mutex);
-    if (result)
-      tests[i] = *result;
-    else
-      error = result.error();
-  });
-  if (error) return *error;
+    LF_ASSIGN_OR_RETURN(tests[i], tester.Test(inner[chosen]));
+    return {};
+  }));
   return tests;
 }
 

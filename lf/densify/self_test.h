@@ -8,6 +8,7 @@
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
 #include "lf/densify/densify_plan.h"
+#include "lf/densify/watched_loop.h"
 #include "lf/light_field/model/light_field.h"
 #include "lf/storage/load/lf_image_store.h"
 
@@ -38,10 +39,10 @@ inline constexpr double kNearlyRightDb = 36;
 // smoothed. The distances between LF cameras are therefore larger than they will be. LF images on
 // the hull of the LF cameras are not tested, because none surround them. Empty if there are no
 // others.
-// Errors of LoadWorkingImage().
+// Errors of LoadWorkingImage(); kInterrupted.
 Result<std::vector<LeftOut>> TestByLeavingOut(const LightField& light_field,
                                               const LfImageStore& store, const DensifyPlan& plan,
-                                              ThreadPool& pool);
+                                              ThreadPool& pool, const Watch& watch = {});
 
 double MedianPsnrDb(const std::vector<LeftOut>& tests);
 double MedianGainDb(const std::vector<LeftOut>& tests);

@@ -9,6 +9,7 @@
 #include "lf/core/image.h"
 #include "lf/densify/depth_plane.h"
 #include "lf/densify/inverse_depths.h"
+#include "lf/densify/watched_loop.h"
 #include "lf/densify/working_image.h"
 
 namespace lf {
@@ -38,11 +39,13 @@ struct VirtualImage {
 //      candidates, because a pixel at an outline shows two depths (Penner and Zhang, "Soft 3D
 //      reconstruction for view synthesis", 2017).
 // A pixel without candidate takes the largest depth that a candidate around it has.
-//   camera     without distortion
-//   sources    1 to kMostSources
-//   tolerance  of inverse depths that count as equal
+//   camera       without distortion
+//   sources      1 to kMostSources
+//   tolerance    of inverse depths that count as equal
+//   interrupted  once it is set, the result must not be used
 inline constexpr size_t kMostSources = 8;
 VirtualImage Synthesize(const PinholeCamera& camera, std::span<const Source> sources,
-                        const InverseDepths& range, double tolerance);
+                        const InverseDepths& range, double tolerance,
+                        InterruptFlag interrupted = nullptr);
 
 }  // namespace lf
