@@ -187,11 +187,12 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   options.interrupted = &interrupted;
   lf::ThreadPool pool(common.threads);
   if (!options.resume) LF_RETURN_IF_ERROR(CheckAgreement(a, light_field, pool, interrupted));
-  lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), "LF images");
-  LF_ASSIGN_OR_RETURN(const lf::DensifyReport report,
-                      lf::Densify(light_field, options, pool, [&](const lf::DensifyProgress& now) {
-                        meter.Update(now.done, now.total, now.step);
-                      }));
+  lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), "comparisons");
+  LF_ASSIGN_OR_RETURN(
+      const lf::DensifyReport report,
+      lf::Densify(light_field, options, pool, [&](const lf::DensifyProgress& now) {
+        meter.Update(now.work_done, now.work_total, {{now.step, now.done, now.total}});
+      }));
   if (!report.dense.empty())
     return lf::InputError(fmt::format(
         "{}; render the light field as it is, or ask for a smaller --spacing", report.dense));

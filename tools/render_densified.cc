@@ -67,11 +67,12 @@ Result<DensifiedFilm> DensifyForFilm(LightField light_field, const CameraPath& p
   if (options.folder.video) outputs.emplace_back(*options.folder.video, "the video", "--video");
   LF_RETURN_IF_ERROR(CheckOutputFiles(std::move(outputs), options.folder.inputs));
   LF_RETURN_IF_ERROR(CreateFolder(options.folder.output_folder));
-  ProgressMeter meter(ParseProgressStyle(common.progress), "LF images");
-  LF_ASSIGN_OR_RETURN(const DensifyReport report,
-                      Densify(light_field, densify, pool, [&](const DensifyProgress& now) {
-                        meter.Update(now.done, now.total, now.step);
-                      }));
+  ProgressMeter meter(ParseProgressStyle(common.progress), "comparisons");
+  LF_ASSIGN_OR_RETURN(
+      const DensifyReport report,
+      Densify(light_field, densify, pool, [&](const DensifyProgress& now) {
+        meter.Update(now.work_done, now.work_total, {{now.step, now.done, now.total}});
+      }));
   if (!report.dense.empty()) {
     LogInfo("--densify makes no virtual LF images: {}", report.dense);
     return DensifiedFilm{std::move(light_field), {}};

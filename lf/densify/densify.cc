@@ -12,11 +12,11 @@
 
 #include "lf/core/log.h"
 #include "lf/core/shell_word.h"
-#include "lf/densify/depth_plane.h"
+#include "lf/densify/densify_work.h"
+#include "lf/densify/depth_planes.h"
 #include "lf/densify/folded_poses.h"
 #include "lf/densify/recorded_codes.h"
 #include "lf/densify/recorded_values.h"
-#include "lf/densify/stored_planes.h"
 #include "lf/densify/synthesis.h"
 #include "lf/densify/watched_loop.h"
 #include "lf/densify/working_images.h"
@@ -88,7 +88,8 @@ class Densifier {
         light_field_(std::move(light_field)),
         options_(options),
         pool_(pool),
-        progress_(progress) {}
+        progress_(progress),
+        work_(light_field_, options.choices) {}
 
   Result<DensifyReport> Run();
 
@@ -101,32 +102,26 @@ class Densifier {
   Result<void> CheckPoses();
   Result<void> Test();
   Result<void> OpenWriter();
-  Result<void> SweepAll();
-  Result<void> Sweep(uint32_t id);
-  Result<void> RefineAll();
-  Result<DepthPlane> Refined(uint32_t id, double* agreeing_count);
+  void LeaveOutDoneWork();
+  Result<void> FindDepths();
   Result<void> AddRecorded(LfImageId id);
   Result<void> AddVirtual(const RecordedValues& values, size_t i);
   // Makes kind_ hold the values of a recorded LF image.
   void Hold(const StoredKind& kind);
   Result<Loaded> Load(std::span<const uint32_t> ids);
   // Returns a watch of a step, which shows progress.
-  Watch WatchOf(const char* step) const;
-  // The error of a user who interrupted a call whose result must therefore not be used.
-  Result<void> CheckNotInterrupted() const;
+  Watch WatchOf(DensifyStep step) const;
   // Calls body(i) for each i on all threads, until a call fails or the user interrupts. Commits
   // what was written.
-  Result<void> ForEach(const char* step, size_t count,
+  Result<void> ForEach(DensifyStep step, size_t count,
                        const std::function<Result<void>(size_t)>& body);
-  PinholeCamera CameraOf(uint32_t id) const {
-    return WorkingCamera(light_field_.Camera(LfImageId{id}), options_.choices.divisor);
-  }
 
   LightFieldIdentity whole_;  // for a packed store, the light field that it was made from
   LightField light_field_;    // without broken LF images
   const DensifyOptions& options_;
   ThreadPool& pool_;
   const std::function<void(const DensifyProgress&)>& progress_;
+  DensifyWork work_;
 
   std::unique_ptr<LfImageStore> store_;
   std::unique_ptr<RecordedCodes> recorded_;
@@ -135,27 +130,25 @@ class Densifier {
   DensifyPlan plan_;
   LightField all_;  // recorded and virtual LF cameras
   std::optional<PackedStoreWriter> writer_;
-  std::vector<DepthPlane> depths_;  // [LF image]; empty for those that are not swept
+  std::unique_ptr<DepthPlanes> depths_;
 
   std::mutex mutex_;  // guards all members below
   DensifyReport report_;
   StoredKind kind_;  // kind that holds the values of all recorded LF images
 };
 
-Watch Densifier::WatchOf(const char* step) const {
-  Watch watch{step, options_.interrupted};
-  if (progress_)
-    watch.tell = [=, this](size_t done, size_t count) { progress_({step, done, count}); };
+Watch Densifier::WatchOf(DensifyStep step) const {
+  Watch watch{NameOf(step), options_.interrupted};
+  if (!progress_) return watch;
+  watch.tell = [=, this](size_t done, size_t count) {
+    const double share = static_cast<double>(done) / static_cast<double>(count);
+    progress_({NameOf(step), done, count, static_cast<uint64_t>(work_.Done(step, share)),
+               static_cast<uint64_t>(work_.Total())});
+  };
   return watch;
 }
 
-// The loop that makes the call returns an error of its own.
-Result<void> Densifier::CheckNotInterrupted() const {
-  if (IsSet(options_.interrupted)) return Error{ErrorKind::kInterrupted, "interrupted"};
-  return {};
-}
-
-Result<void> Densifier::ForEach(const char* step, size_t count,
+Result<void> Densifier::ForEach(DensifyStep step, size_t count,
                                 const std::function<Result<void>(size_t)>& body) {
   const Result<void> result = ForEachWatched(pool_, count, WatchOf(step), body);
   // Earlier work is committed, unless the disk or the memory failed.
@@ -213,7 +206,7 @@ Result<void> Densifier::LeaveOutBroken() {
                     "light field that it was made from",
                     light_field_.folder.string()));
   std::vector<std::string> reasons(light_field_.size());
-  LF_RETURN_IF_ERROR(ForEach("checking LF images", light_field_.size(), [&](size_t i) {
+  LF_RETURN_IF_ERROR(ForEach(DensifyStep::kChecking, light_field_.size(), [&](size_t i) {
     const LfImageId id{static_cast<uint32_t>(i)};
     const Intrinsics& k = light_field_.Camera(id).intrinsics;
     const auto loaded = LoadWithoutThrowing(*store_, id, {0, 0, k.width_px, k.height_px},
@@ -251,7 +244,7 @@ Result<void> Densifier::CheckPoses() {
   if (light_field_.size() > kMostChecked) return {};
   LF_ASSIGN_OR_RETURN(const std::vector<ComparedPair> pairs,
                       ComparePairs(light_field_, *store_, plan_.plane.points, plan_.range, pool_,
-                                   WatchOf("comparing pairs")));
+                                   WatchOf(DensifyStep::kPairs)));
   const std::vector<std::vector<uint32_t>> groups = ContradictingGroups(light_field_.size(), pairs);
   if (groups.empty()) return {};
   std::vector<std::string> source = {FileArgument(options_.source_name)};
@@ -263,8 +256,8 @@ Result<void> Densifier::CheckPoses() {
 }
 
 Result<void> Densifier::Test() {
-  LF_ASSIGN_OR_RETURN(report_.tests,
-                      TestByLeavingOut(light_field_, *store_, plan_, pool_, WatchOf("testing")));
+  LF_ASSIGN_OR_RETURN(report_.tests, TestByLeavingOut(light_field_, *store_, plan_, pool_,
+                                                      WatchOf(DensifyStep::kTests)));
   if (report_.tests.empty()) {
     LogWarning(
         "no LF camera is surrounded by others, so that virtual LF images cannot be tested against "
@@ -321,84 +314,38 @@ Result<void> Densifier::OpenWriter() {
                     : PackedStoreWriter::Create(options_.store, all_, plan, std::move(lock));
   if (!writer) return writer.error();
   writer_.emplace(*std::move(writer));
+  LeaveOutDoneWork();
   return {};
 }
 
-Result<void> Densifier::Sweep(uint32_t id) {
-  const PinholeCamera camera = CameraOf(id);
-  if (writer_->HasPlane(LfImageId{id}, PlaneKind::kSwept)) {
-    LF_ASSIGN_OR_RETURN(const Image<uint16_t> stored,
-                        writer_->ReadPlane(LfImageId{id}, PlaneKind::kSwept));
-    depths_[id] = CutTo(stored, camera.intrinsics.width_px, camera.intrinsics.height_px);
-    return {};
-  }
-  std::vector<uint32_t> ids{id};
-  ids.insert(ids.end(), plan_.compare_with[id].begin(), plan_.compare_with[id].end());
-  LF_ASSIGN_OR_RETURN(const Loaded loaded, Load(ids));
-  const ThreadCpuTimer timer;
-  std::vector<SweepView> views;
-  for (size_t k = 1; k < loaded.size(); ++k) views.push_back(ViewFrom(*loaded[0], *loaded[k]));
-  depths_[id] = SweepDepths(*loaded[0], views, plan_.range, plan_.planes, options_.interrupted);
-  LF_RETURN_IF_ERROR(CheckNotInterrupted());
-  {
-    const std::lock_guard lock(mutex_);
-    report_.sweep_cpu_s += static_cast<double>(timer.Nanoseconds()) * 1e-9;
-    report_.swept_pixels += static_cast<double>(depths_[id].pixels().size());
-  }
-  const Intrinsics& k = light_field_.Camera(LfImageId{id}).intrinsics;
-  return writer_->AddPlane(
-      LfImageId{id}, PlaneKind::kSwept,
-      PaddedTo(depths_[id], PlaneSizeOf(k.width_px, k.height_px, options_.choices.divisor)));
+// Work of an earlier run is not work of this one.
+void Densifier::LeaveOutDoneWork() {
+  const auto share = [](size_t missing, size_t count) {
+    return count == 0 ? 0 : static_cast<double>(missing) / static_cast<double>(count);
+  };
+  size_t recorded = 0, made = 0, swept = 0;
+  for (uint32_t i = 0; i < all_.size(); ++i)
+    if (!writer_->Has(LfImageId{i})) ++(i < light_field_.size() ? recorded : made);
+  for (const uint32_t id : plan_.swept)
+    if (!writer_->HasPlane(LfImageId{id}, PlaneKind::kSwept)) ++swept;
+  work_.Scale(DensifyStep::kRecorded, share(recorded, light_field_.size()));
+  work_.Scale(DensifyStep::kDepths, share(swept, plan_.swept.size()));
+  work_.Scale(DensifyStep::kVirtual, share(made, plan_.virtual_cameras.size()));
 }
 
-Result<void> Densifier::SweepAll() {
-  depths_.resize(light_field_.size());
-  return ForEach("depths", plan_.swept.size(), [&](size_t i) { return Sweep(plan_.swept[i]); });
-}
-
-Result<DepthPlane> Densifier::Refined(uint32_t id, double* agreeing_count) {
-  constexpr int kWanted = 2;
-  std::vector<DepthView> views;
-  for (const uint32_t other : plan_.compare_with[id])
-    if (!depths_[other].empty())
-      views.push_back({&depths_[other], MapBetween(CameraOf(id), CameraOf(other))});
-  const Image<uint8_t> agreeing =
-      CountAgreeing(depths_[id], views, plan_.range, plan_.tolerance, options_.interrupted);
-  const int wanted = std::min(kWanted, static_cast<int>(views.size()));
-  *agreeing_count =
-      static_cast<double>(std::count_if(agreeing.pixels().begin(), agreeing.pixels().end(),
-                                        [&](uint8_t count) { return count >= wanted; }));
-  LF_ASSIGN_OR_RETURN(const auto image, images_->Get(LfImageId{id}));
-  return FillDisagreeing(depths_[id], agreeing, wanted, image->tones, plan_.range,
-                         plan_.shift_per_depth_px, options_.interrupted);
-}
-
-Result<void> Densifier::RefineAll() {
-  constexpr int kRounds = 2;
-  for (int round = 0; round < kRounds; ++round) {
-    std::vector<DepthPlane> refined(depths_.size());
-    double agreeing = 0, pixels = 0;
-    LF_RETURN_IF_ERROR(
-        ForEach("comparing depths", plan_.swept.size(), [&](size_t i) -> Result<void> {
-          const uint32_t id = plan_.swept[i];
-          double count = 0;
-          LF_ASSIGN_OR_RETURN(refined[id], Refined(id, &count));
-          const std::lock_guard lock(mutex_);
-          agreeing += count;
-          pixels += static_cast<double>(refined[id].pixels().size());
-          return {};
-        }));
-    depths_ = std::move(refined);
-    report_.agreeing_share = agreeing / pixels;
-  }
-  return ForEach("storing depths", plan_.sources.size(), [&](size_t i) -> Result<void> {
-    const LfImageId id{plan_.sources[i]};
-    if (writer_->HasPlane(id, PlaneKind::kDisparity)) return {};
-    const DepthPlane recorded = AsRecorded(depths_[id.value], light_field_.Camera(id).intrinsics,
-                                           options_.choices.divisor, options_.interrupted);
-    LF_RETURN_IF_ERROR(CheckNotInterrupted());
-    return writer_->AddPlane(id, PlaneKind::kDisparity, recorded);
-  });
+Result<void> Densifier::FindDepths() {
+  const DepthPlanes::Loop loop = [this](DensifyStep step, size_t count, const auto& body) {
+    return ForEach(step, count, body);
+  };
+  depths_ =
+      std::make_unique<DepthPlanes>(light_field_, plan_, *images_, *writer_, options_.interrupted);
+  LF_RETURN_IF_ERROR(depths_->Search(loop));
+  LF_RETURN_IF_ERROR(depths_->MakeAgree(loop));
+  LF_RETURN_IF_ERROR(depths_->Store(loop));
+  report_.sweep_cpu_s = depths_->facts().cpu_s;
+  report_.swept_pixels = depths_->facts().searched_pixels;
+  report_.agreeing_share = depths_->facts().agreeing_share;
+  return {};
 }
 
 void Densifier::Hold(const StoredKind& kind) {
@@ -429,10 +376,11 @@ Result<void> Densifier::AddVirtual(const RecordedValues& values, size_t i) {
   std::vector<Source> sources;
   for (size_t k = 0; k < ids.size(); ++k)
     sources.push_back(
-        {loaded[k].get(), &depths_[ids[k]], static_cast<float>(wanted.sources[k].weight)});
+        {loaded[k].get(), &depths_->Of(ids[k]), static_cast<float>(wanted.sources[k].weight)});
   const VirtualImage image =
       Synthesize(wanted.camera, sources, plan_.range, plan_.tolerance, options_.interrupted);
-  LF_RETURN_IF_ERROR(CheckNotInterrupted());
+  // The loop returns an error of its own.
+  if (IsSet(options_.interrupted)) return Error{ErrorKind::kInterrupted, "interrupted"};
   {
     const std::lock_guard lock(mutex_);
     const auto pixels = static_cast<double>(image.light.width()) * image.light.height();
@@ -455,7 +403,8 @@ Result<DensifyReport> Densifier::Run() {
   images_ = std::make_unique<WorkingImages>(light_field_, *store_, options_.choices.divisor,
                                             options_.memory_bytes);
   LF_ASSIGN_OR_RETURN(plan_, PlanDensify(light_field_, *store_, options_.choices, pool_,
-                                         WatchOf("finding the range")));
+                                         WatchOf(DensifyStep::kRange)));
+  work_.Plan(light_field_, options_.choices, plan_);
   report_.dense = plan_.dense;
   report_.recorded_count = light_field_.size();
   report_.virtual_count = plan_.virtual_cameras.size();
@@ -471,13 +420,12 @@ Result<DensifyReport> Densifier::Run() {
 
   LF_RETURN_IF_ERROR(OpenWriter());
   if (report_.was_there) return std::move(report_);
-  LF_RETURN_IF_ERROR(ForEach("recorded LF images", light_field_.size(), [&](size_t i) {
+  LF_RETURN_IF_ERROR(ForEach(DensifyStep::kRecorded, light_field_.size(), [&](size_t i) {
     return AddRecorded(LfImageId{static_cast<uint32_t>(i)});
   }));
-  LF_RETURN_IF_ERROR(SweepAll());
-  LF_RETURN_IF_ERROR(RefineAll());
+  LF_RETURN_IF_ERROR(FindDepths());
   const RecordedValues values(light_field_.encoding, kind_);
-  LF_RETURN_IF_ERROR(ForEach("virtual LF images", plan_.virtual_cameras.size(),
+  LF_RETURN_IF_ERROR(ForEach(DensifyStep::kVirtual, plan_.virtual_cameras.size(),
                              [&](size_t i) { return AddVirtual(values, i); }));
   if (report_.made_pixels > 0) report_.weak_share /= report_.made_pixels;
   LF_RETURN_IF_ERROR(writer_->DropPlanes(PlaneKind::kSwept));

@@ -13,6 +13,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -42,9 +43,14 @@ struct DensifyOptions {
 };
 
 struct DensifyProgress {
-  const char* step = "";  // what is being done
+  const char* step = "";  // items of the step that is being done
   size_t done = 0;
   size_t total = 0;
+  // Work of all steps of this call, in comparisons of a pixel with a neighbour at one depth; other
+  // work counts as the comparisons that take as long. The total is a guess until the range of
+  // depths is known.
+  uint64_t work_done = 0;
+  uint64_t work_total = 1;
 };
 
 struct DensifyReport {

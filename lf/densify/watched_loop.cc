@@ -21,6 +21,7 @@ Result<void> ForEachWatched(ThreadPool& pool, size_t count, const Watch& watch,
                                 count, watch.step)};
     return error.has_value();
   };
+  if (watch.tell && count > 0) watch.tell(0, count);
   pool.ForEach(count, [&](size_t i) {
     {
       const std::lock_guard lock(mutex);

@@ -22,7 +22,7 @@ inline bool IsSet(InterruptFlag flag) {
 struct Watch {
   const char* step = "";  // what the loop does, for messages
   InterruptFlag interrupted = nullptr;
-  // Is called after each item, by one thread at a time; empty: nobody asks.
+  // Is called before the first item and after each, by one thread at a time; empty: nobody asks.
   std::function<void(size_t done, size_t count)> tell = {};
 };
 
