@@ -22,6 +22,7 @@
 #include "lf/core/version.h"
 #include "lf/densify/densify.h"
 #include "lf/densify/densify_report.h"
+#include "lf/densify/depth_cache.h"
 #include "lf/import/paths/open_path.h"
 #include "lf/storage/packed/packed_store_file.h"
 
@@ -53,7 +54,7 @@ seconds of work; --resume continues.)",
 
 struct Arguments {
   lf::LightFieldArgument light_field;
-  std::string path, output, memory = "2G";
+  std::string path, output, memory = "2G", cache;
   std::vector<double> depths;
   lf::DensifyChoices choices;
   bool resume = false, overwrite = false;
@@ -120,6 +121,7 @@ void AddQuality(CLI::App& app, Arguments& a) {
 void AddRunning(CLI::App& app, Arguments& a) {
   lf::OptionGroup running(app, lf::kRunningGroup);
   lf::AddStoreRestart(running, a.resume, a.overwrite);
+  lf::AddDepthCache(running, a.cache);
   running
       .Add("--memory SIZE", a.memory,
            "Memory for LF images that are kept (2G)\n"
@@ -155,6 +157,7 @@ lf::Result<lf::DensifyOptions> MakeOptions(const Arguments& a, const lf::LightFi
     options.choices.frames.assign(path.AllInstants().begin(), path.AllInstants().end());
   }
   LF_ASSIGN_OR_RETURN(options.memory_bytes, lf::ParseByteSize(a.memory, "--memory"));
+  LF_ASSIGN_OR_RETURN(options.cache, lf::DepthCacheFolder(a.cache, light_field));
   options.resume = a.resume;
   options.overwrite = a.overwrite;
   options.source_name = a.light_field.path;

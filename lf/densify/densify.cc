@@ -13,8 +13,10 @@
 #include "lf/core/log.h"
 #include "lf/core/shell_word.h"
 #include "lf/densify/densify_work.h"
+#include "lf/densify/depth_cache.h"
 #include "lf/densify/depth_planes.h"
 #include "lf/densify/folded_poses.h"
+#include "lf/densify/kept_findings.h"
 #include "lf/densify/recorded_codes.h"
 #include "lf/densify/recorded_values.h"
 #include "lf/densify/synthesis.h"
@@ -89,6 +91,7 @@ class Densifier {
         options_(options),
         pool_(pool),
         progress_(progress),
+        cache_(options.cache),
         work_(light_field_, options.choices) {}
 
   Result<DensifyReport> Run();
@@ -121,6 +124,7 @@ class Densifier {
   const DensifyOptions& options_;
   ThreadPool& pool_;
   const std::function<void(const DensifyProgress&)>& progress_;
+  DepthCache cache_;
   DensifyWork work_;
 
   std::unique_ptr<LfImageStore> store_;
@@ -130,6 +134,8 @@ class Densifier {
   DensifyPlan plan_;
   LightField all_;  // recorded and virtual LF cameras
   std::optional<PackedStoreWriter> writer_;
+  std::optional<LfImageKeys> keys_;
+  std::optional<KeptFindings> findings_;
   std::unique_ptr<DepthPlanes> depths_;
 
   std::mutex mutex_;  // guards all members below
@@ -243,8 +249,7 @@ Result<void> Densifier::CheckPoses() {
   constexpr size_t kMostChecked = 400;
   if (light_field_.size() > kMostChecked) return {};
   LF_ASSIGN_OR_RETURN(const std::vector<ComparedPair> pairs,
-                      ComparePairs(light_field_, *store_, plan_.plane.points, plan_.range, pool_,
-                                   WatchOf(DensifyStep::kPairs)));
+                      findings_->Pairs(plan_, WatchOf(DensifyStep::kPairs)));
   const std::vector<std::vector<uint32_t>> groups = ContradictingGroups(light_field_.size(), pairs);
   if (groups.empty()) return {};
   std::vector<std::string> source = {FileArgument(options_.source_name)};
@@ -256,8 +261,7 @@ Result<void> Densifier::CheckPoses() {
 }
 
 Result<void> Densifier::Test() {
-  LF_ASSIGN_OR_RETURN(report_.tests, TestByLeavingOut(light_field_, *store_, plan_, pool_,
-                                                      WatchOf(DensifyStep::kTests)));
+  LF_ASSIGN_OR_RETURN(report_.tests, findings_->Tests(plan_, WatchOf(DensifyStep::kTests)));
   if (report_.tests.empty()) {
     LogWarning(
         "no LF camera is surrounded by others, so that virtual LF images cannot be tested against "
@@ -314,6 +318,8 @@ Result<void> Densifier::OpenWriter() {
                     : PackedStoreWriter::Create(options_.store, all_, plan, std::move(lock));
   if (!writer) return writer.error();
   writer_.emplace(*std::move(writer));
+  depths_ = std::make_unique<DepthPlanes>(light_field_, plan_, *images_, *writer_, *keys_, cache_,
+                                          options_.interrupted);
   LeaveOutDoneWork();
   return {};
 }
@@ -323,13 +329,11 @@ void Densifier::LeaveOutDoneWork() {
   const auto share = [](size_t missing, size_t count) {
     return count == 0 ? 0 : static_cast<double>(missing) / static_cast<double>(count);
   };
-  size_t recorded = 0, made = 0, swept = 0;
+  size_t recorded = 0, made = 0;
   for (uint32_t i = 0; i < all_.size(); ++i)
     if (!writer_->Has(LfImageId{i})) ++(i < light_field_.size() ? recorded : made);
-  for (const uint32_t id : plan_.swept)
-    if (!writer_->HasPlane(LfImageId{id}, PlaneKind::kSwept)) ++swept;
   work_.Scale(DensifyStep::kRecorded, share(recorded, light_field_.size()));
-  work_.Scale(DensifyStep::kDepths, share(swept, plan_.swept.size()));
+  work_.Scale(DensifyStep::kDepths, share(depths_->MissingCount(), plan_.swept.size()));
   work_.Scale(DensifyStep::kVirtual, share(made, plan_.virtual_cameras.size()));
 }
 
@@ -337,11 +341,11 @@ Result<void> Densifier::FindDepths() {
   const DepthPlanes::Loop loop = [this](DensifyStep step, size_t count, const auto& body) {
     return ForEach(step, count, body);
   };
-  depths_ =
-      std::make_unique<DepthPlanes>(light_field_, plan_, *images_, *writer_, options_.interrupted);
+
   LF_RETURN_IF_ERROR(depths_->Search(loop));
   LF_RETURN_IF_ERROR(depths_->MakeAgree(loop));
   LF_RETURN_IF_ERROR(depths_->Store(loop));
+  report_.cached_planes = depths_->facts().cached;
   report_.sweep_cpu_s = depths_->facts().cpu_s;
   report_.swept_pixels = depths_->facts().searched_pixels;
   report_.agreeing_share = depths_->facts().agreeing_share;
@@ -400,10 +404,15 @@ Result<DensifyReport> Densifier::Run() {
   LF_RETURN_IF_ERROR(LeaveOutBroken());
   LF_ASSIGN_OR_RETURN(recorded_, RecordedCodes::Open(light_field_));
   LF_RETURN_IF_ERROR(CheckCount(light_field_));
+  keys_.emplace(light_field_, kDensifyVersion);
+  findings_.emplace(light_field_, *store_, *keys_, cache_, pool_);
   images_ = std::make_unique<WorkingImages>(light_field_, *store_, options_.choices.divisor,
                                             options_.memory_bytes);
-  LF_ASSIGN_OR_RETURN(plan_, PlanDensify(light_field_, *store_, options_.choices, pool_,
-                                         WatchOf(DensifyStep::kRange)));
+  LF_ASSIGN_OR_RETURN(
+      plan_, PlanDensify(light_field_, *store_, options_.choices, pool_,
+                         [this](std::span<const std::vector<uint32_t>> compare_with) {
+                           return findings_->Range(compare_with, WatchOf(DensifyStep::kRange));
+                         }));
   work_.Plan(light_field_, options_.choices, plan_);
   report_.dense = plan_.dense;
   report_.recorded_count = light_field_.size();

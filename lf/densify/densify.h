@@ -31,6 +31,9 @@ struct DensifyOptions {
   std::filesystem::path store;  // path of the packed store, such as STORE.lfs
   DensifyChoices choices;
   size_t memory_bytes = size_t{2} << 30;  // for LF images that are kept in memory
+  // Folder in which depth planes are kept for other calls (depth_cache.h); empty: they are not
+  // kept.
+  std::filesystem::path cache = {};
   // True: resumes an unfinished store, or begins a new one if there is none. If the store is
   // complete, it must match the options, and is kept.
   bool resume = false;
@@ -75,6 +78,7 @@ struct DensifyReport {
   double agreeing_share = 0;
   // Mean of VirtualImage::weak_share of the virtual LF images that were made.
   double weak_share = 0;
+  size_t cached_planes = 0;  // number of depth planes that were kept by an earlier call
   // Work of this call: CPU time, and the number of pixels that were swept and made.
   double sweep_cpu_s = 0, synthesis_cpu_s = 0;
   double swept_pixels = 0, made_pixels = 0;

@@ -202,7 +202,7 @@ double ToleranceFor(const InverseDepths& range, int planes, double shift_per_dep
 
 Result<DensifyPlan> PlanDensify(const LightField& light_field, const LfImageStore& store,
                                 const DensifyChoices& choices, ThreadPool& pool,
-                                const Watch& search) {
+                                const RangeSearch& search) {
   DensifyPlan plan;
   plan.divisor = choices.divisor;
   LF_ASSIGN_OR_RETURN(plan.plane, CameraPlaneOf(light_field));
@@ -212,7 +212,8 @@ Result<DensifyPlan> PlanDensify(const LightField& light_field, const LfImageStor
     plan.range = {1 / choices.depths->far_w, 1 / choices.depths->near_w};
   } else {
     LF_ASSIGN_OR_RETURN(plan.range,
-                        FindInverseDepths(light_field, store, plan.compare_with, pool, search));
+                        search ? search(plan.compare_with)
+                               : FindInverseDepths(light_field, store, plan.compare_with, pool));
   }
   plan.shift_per_depth_px = ShiftOf(light_field, plan, choices.divisor);
   LF_RETURN_IF_ERROR(CheckReach(light_field, plan, choices.divisor, choices.force));

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -16,7 +17,6 @@
 #include "lf/densify/camera_plane.h"
 #include "lf/densify/inverse_depths.h"
 #include "lf/densify/virtual_cameras.h"
-#include "lf/densify/watched_loop.h"
 #include "lf/light_field/model/light_field.h"
 #include "lf/storage/load/lf_image_store.h"
 
@@ -66,14 +66,19 @@ int PlanesFor(double shift_px);
 // of shift, or one compared depth.
 double ToleranceFor(const InverseDepths& range, int planes, double shift_per_depth_px);
 
+// Finds the range of inverse depths.
+//   compare_with  as DensifyPlan::compare_with
+using RangeSearch =
+    std::function<Result<InverseDepths>(std::span<const std::vector<uint32_t>> compare_with)>;
+
 // Makes the plan, or says why the light field cannot be densified.
 //   store   of the light field, with Mosaics::kToRgb
-//   search  watches FindInverseDepths()
+//   search  in place of FindInverseDepths(), if it is given
 // kInput: fewer than three LF cameras, or all on one line; LF images too far from one another (the
 // message has the shift or the angle); or an error of FindInverseDepths(). kUsage: no virtual LF
 // image contributes to the frames, or most_virtual is too small.
 Result<DensifyPlan> PlanDensify(const LightField& light_field, const LfImageStore& store,
                                 const DensifyChoices& choices, ThreadPool& pool,
-                                const Watch& search = {});
+                                const RangeSearch& search = {});
 
 }  // namespace lf

@@ -36,6 +36,14 @@ Result<DepthPlane> DepthPlanes::Searched(uint32_t id) {
 
 Result<void> DepthPlanes::SearchOne(uint32_t id) {
   const PinholeCamera camera = CameraOf(id);
+  const DepthCache::Entry entry = EntryOf(id);
+  if (auto cached =
+          cache_.FindPlane(entry, camera.intrinsics.width_px, camera.intrinsics.height_px)) {
+    planes_[id] = *std::move(cached);
+    const std::lock_guard lock(mutex_);
+    ++facts_.cached;
+    return {};
+  }
   if (writer_.HasPlane(LfImageId{id}, PlaneKind::kSwept)) {
     LF_ASSIGN_OR_RETURN(const Image<uint16_t> stored,
                         writer_.ReadPlane(LfImageId{id}, PlaneKind::kSwept));
@@ -43,10 +51,18 @@ Result<void> DepthPlanes::SearchOne(uint32_t id) {
     return {};
   }
   LF_ASSIGN_OR_RETURN(planes_[id], Searched(id));
+  if (cache_.KeepPlane(entry, planes_[id])) return {};
   const Intrinsics& k = light_field_.Camera(LfImageId{id}).intrinsics;
   return writer_.AddPlane(
       LfImageId{id}, PlaneKind::kSwept,
       PaddedTo(planes_[id], PlaneSizeOf(k.width_px, k.height_px, plan_.divisor)));
+}
+
+size_t DepthPlanes::MissingCount() const {
+  return static_cast<size_t>(
+      std::count_if(plan_.swept.begin(), plan_.swept.end(), [&](uint32_t id) {
+        return !cache_.MayHave(EntryOf(id)) && !writer_.HasPlane(LfImageId{id}, PlaneKind::kSwept);
+      }));
 }
 
 Result<void> DepthPlanes::Search(const Loop& loop) {

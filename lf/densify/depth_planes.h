@@ -12,6 +12,7 @@
 #include "lf/core/result.h"
 #include "lf/densify/densify_plan.h"
 #include "lf/densify/densify_work.h"
+#include "lf/densify/depth_cache.h"
 #include "lf/densify/depth_plane.h"
 #include "lf/densify/watched_loop.h"
 #include "lf/densify/working_images.h"
@@ -28,16 +29,22 @@ class DepthPlanes {
 
   // All must outlive this object.
   DepthPlanes(const LightField& light_field, const DensifyPlan& plan, WorkingImages& images,
-              PackedStoreWriter& writer, InterruptFlag interrupted)
+              PackedStoreWriter& writer, const LfImageKeys& keys, DepthCache& cache,
+              InterruptFlag interrupted)
       : light_field_(light_field),
         plan_(plan),
         images_(images),
         writer_(writer),
+        keys_(keys),
+        cache_(cache),
         interrupted_(interrupted),
         planes_(light_field.size()) {}
 
-  // Searches the depths of plan.swept, except for planes that the store has from an earlier run.
+  // Searches the depths of plan.swept, except for planes that the cache or the store has from an
+  // earlier run. Keeps them in the cache, or else in the store.
   Result<void> Search(const Loop& loop);
+  // Returns how many planes Search() will probably search.
+  size_t MissingCount() const;
   // Replaces depths on which neighbours do not agree, twice.
   Result<void> MakeAgree(const Loop& loop);
   // Stores the planes of plan.sources.
@@ -46,9 +53,10 @@ class DepthPlanes {
   // Returns the plane of the working image of an LF image of plan.swept.
   const DepthPlane& Of(uint32_t id) const { return planes_[id]; }
 
-  // What Search() and MakeAgree() did.
+  // Figures of Search() and MakeAgree().
   struct Facts {
-    double cpu_s = 0;  // CPU time of the search
+    size_t cached = 0;  // number of planes that the cache had
+    double cpu_s = 0;   // CPU time of the search
     double searched_pixels = 0;
     double agreeing_share = 0;  // share of the pixels on whose depth two neighbours agree
   };
@@ -59,6 +67,9 @@ class DepthPlanes {
     return WorkingCamera(light_field_.Camera(LfImageId{id}), plan_.divisor);
   }
   Result<void> CheckNotInterrupted() const;
+  DepthCache::Entry EntryOf(uint32_t id) const {
+    return keys_.PlaneOf(id, plan_.compare_with[id], plan_.range, plan_.planes, plan_.divisor);
+  }
   Result<void> SearchOne(uint32_t id);
   Result<DepthPlane> Searched(uint32_t id);
   Result<DepthPlane> Agreeing(uint32_t id, double* agreeing_count) const;
@@ -67,6 +78,8 @@ class DepthPlanes {
   const DensifyPlan& plan_;
   WorkingImages& images_;
   PackedStoreWriter& writer_;
+  const LfImageKeys& keys_;
+  DepthCache& cache_;
   const InterruptFlag interrupted_;
   std::vector<DepthPlane> planes_;  // [LF image]; empty for those that are not searched
 
