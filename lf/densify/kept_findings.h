@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is found out about a light field as a whole, once, and then kept in a cache: the range of
-// depths, the pairs of LF images that agree, and the tests. Internal to this folder.
+// Finds out about a light field as a whole, and keeps it in a cache: the range of depths, how well
+// pairs of LF images agree, and the tests. Internal to this folder.
 #pragma once
 
 #include <cstdint>
