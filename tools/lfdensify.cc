@@ -22,6 +22,7 @@
 #include "lf/core/version.h"
 #include "lf/densify/densify.h"
 #include "lf/densify/densify_report.h"
+#include "lf/densify/depth_cache.h"
 #include "lf/import/paths/open_path.h"
 #include "lf/storage/packed/packed_store_file.h"
 
@@ -53,7 +54,7 @@ seconds of work; --resume continues.)",
 
 struct Arguments {
   lf::LightFieldArgument light_field;
-  std::string path, output, memory = "2G";
+  std::string path, output, memory = "2G", cache;
   std::vector<double> depths;
   lf::DensifyChoices choices;
   bool resume = false, overwrite = false;
@@ -120,11 +121,15 @@ void AddQuality(CLI::App& app, Arguments& a) {
 void AddRunning(CLI::App& app, Arguments& a) {
   lf::OptionGroup running(app, lf::kRunningGroup);
   lf::AddStoreRestart(running, a.resume, a.overwrite);
+  lf::AddDepthCache(running, a.cache);
   running
-      .Add("--memory SIZE", a.memory,
-           "Memory for LF images that are kept (2G)\n"
-           "Depths take 2 bytes for each pixel of all LF images on top, and about 200 MB are used "
-           "by each thread.")
+      .Add(
+          "--memory SIZE", a.memory,
+          "Memory for LF images that are kept (2G)\n"
+          "On top come 4 bytes of depths for each pixel of all LF images, and for each thread up "
+          "to "
+          "200 MB and the LF images that it compares: up to nine, of 16 bytes for each pixel. With "
+          "--divisor N, a pixel is N x N of those.")
       ->check(lf::NotEmpty());
 }
 
@@ -155,6 +160,7 @@ lf::Result<lf::DensifyOptions> MakeOptions(const Arguments& a, const lf::LightFi
     options.choices.frames.assign(path.AllInstants().begin(), path.AllInstants().end());
   }
   LF_ASSIGN_OR_RETURN(options.memory_bytes, lf::ParseByteSize(a.memory, "--memory"));
+  LF_ASSIGN_OR_RETURN(options.cache, lf::DepthCacheFolder(a.cache, light_field));
   options.resume = a.resume;
   options.overwrite = a.overwrite;
   options.source_name = a.light_field.path;
@@ -187,11 +193,12 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   options.interrupted = &interrupted;
   lf::ThreadPool pool(common.threads);
   if (!options.resume) LF_RETURN_IF_ERROR(CheckAgreement(a, light_field, pool, interrupted));
-  lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), "LF images");
-  LF_ASSIGN_OR_RETURN(const lf::DensifyReport report,
-                      lf::Densify(light_field, options, pool, [&](const lf::DensifyProgress& now) {
-                        meter.Update(now.done, now.total, now.step);
-                      }));
+  lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), "comparisons");
+  LF_ASSIGN_OR_RETURN(
+      const lf::DensifyReport report,
+      lf::Densify(light_field, options, pool, [&](const lf::DensifyProgress& now) {
+        meter.Update(now.work_done, now.work_total, {{now.step, now.done, now.total}});
+      }));
   if (!report.dense.empty())
     return lf::InputError(fmt::format(
         "{}; render the light field as it is, or ask for a smaller --spacing", report.dense));

@@ -121,12 +121,11 @@ void WarnOfDoubt(const lf::ExamplePath& example, const std::string& light_field,
 
 // Says whether virtual LF images will help a film; if not, the reason. They are tested by leaving
 // LF images out.
-lf::Result<std::string> WhyNotDensify(const lf::LightField& light_field,
-                                      const lf::LfImageStore& store, const lf::CameraPath& path,
+lf::Result<std::string> WhyNotDensify(const lf::LightField& light_field, const lf::CameraPath& path,
                                       lf::ThreadPool& pool) {
   lf::DensifyChoices choices;
   choices.frames.assign(path.AllInstants().begin(), path.AllInstants().end());
-  const lf::Result<lf::DensifyTrial> trial = lf::TryDensify(light_field, store, choices, pool);
+  const lf::Result<lf::DensifyTrial> trial = lf::TryDensify(light_field, choices, pool);
   if (!trial) {
     if (trial.error().kind != lf::ErrorKind::kInput && trial.error().kind != lf::ErrorKind::kUsage)
       return trial.error();
@@ -156,7 +155,7 @@ lf::Result<lf::ExamplePath> MakePath(const lf::LightField& light_field,
   LF_ASSIGN_OR_RETURN(const lf::CameraPath path,
                       lf::ParsePathYaml(example.yaml, output, light_field.unit_m));
   if (!options->densify || !example.doubt.empty()) return example;
-  LF_ASSIGN_OR_RETURN(const std::string why_not, WhyNotDensify(light_field, store, path, pool));
+  LF_ASSIGN_OR_RETURN(const std::string why_not, WhyNotDensify(light_field, path, pool));
   if (why_not.empty()) return example;
   lf::LogWarning(
       "--densify: virtual LF images do not help, so that the lens is chosen without "

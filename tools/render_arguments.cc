@@ -7,6 +7,7 @@
 
 #include "tools/common/help.h"
 #include "tools/common/next_step.h"
+#include "tools/common/store_options.h"
 #include "tools/common/validators.h"
 
 #include "lf/core/geometry.h"
@@ -65,13 +66,14 @@ void AddOutput(CLI::App& app, RenderArguments& a) {
 void AddPicture(CLI::App& app, RenderArguments& a) {
   OptionGroup picture(app, kPictureGroup);
   a.settings.AddTo(picture, SettingGroup::kPicture);
-  picture.AddFlag(
+  CLI::Option* const densify = picture.AddFlag(
       "--densify", a.densify,
       "Put virtual LF images between the recorded ones\n"
       "Makes DIR/densified.lfs as lfdensify does for the path, with its default options, and "
       "renders it (doc/densify.md). The store is kept and used again for the same light field and "
       "path; --resume continues it, and --overwrite makes it anew. A light field that is dense "
       "enough is rendered as it is.");
+  AddDepthCache(picture, a.cache)->needs(densify);
   picture.AddFlag(
       "--no-guard", a.no_guard,
       "Show virtual LF images where a frame is in focus\n"

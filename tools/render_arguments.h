@@ -24,7 +24,7 @@ struct RenderArguments {
   std::vector<std::string> inputs;  // the words LIGHTFIELD PATH, or PACKAGE...
   LightFieldArgument light_field;   // its options; its `path` is the value of --lightfield
   std::string output, video, memory = "8G", format = "exr", rectangles = "on", dump_every = "30s",
-                             shard, finish;
+                             shard, finish, cache;
   SettingOptions settings;
   FrameRangeArguments frames;
   PictureArguments picture;

@@ -13,6 +13,7 @@
 #include "lf/core/output_files.h"
 #include "lf/densify/densify.h"
 #include "lf/densify/densify_report.h"
+#include "lf/densify/depth_cache.h"
 #include "lf/render/pipeline/render.h"
 #include "lf/storage/packed/packed_store_file.h"
 #include "lf/storage/packed/packed_store_writer.h"
@@ -28,9 +29,10 @@ Result<void> CheckDensified(const LightField& light_field, const CameraPath& pat
   return CheckRenderOptions(package, options);
 }
 
-DensifyOptions OptionsOf(const CameraPath& path, const RenderArguments& arguments,
-                         const RenderOptions& options) {
+Result<DensifyOptions> OptionsOf(const LightField& light_field, const CameraPath& path,
+                                 const RenderArguments& arguments, const RenderOptions& options) {
   DensifyOptions densify;
+  LF_ASSIGN_OR_RETURN(densify.cache, DepthCacheFolder(arguments.cache, light_field));
   densify.store = options.folder.output_folder / "densified.lfs";
   densify.choices.frames.assign(path.AllInstants().begin(), path.AllInstants().end());
   // With the default of --memory, this is the default of lfdensify.
@@ -51,6 +53,9 @@ DensifyOptions OptionsOf(const CameraPath& path, const RenderArguments& argument
 void Tell(const DensifyReport& report, const DensifyOptions& options) {
   for (const DensifyReport::Skipped& skipped : report.skipped)
     LogWarning("{}: left out: {}", skipped.name, skipped.reason);
+  if (report.cached_planes > 0)
+    LogInfo("{}: had {} depth planes of an earlier call", options.cache.string(),
+            report.cached_planes);
   LogInfo("{}: {} recorded and {} virtual LF images, copies at most {:.2g} px apart{}",
           options.store.string(), report.recorded_count, report.virtual_count, report.spacing_px,
           report.was_there ? "; existed already" : "");
@@ -62,16 +67,18 @@ Result<DensifiedFilm> DensifyForFilm(LightField light_field, const CameraPath& p
                                      const RenderArguments& arguments, const RenderOptions& options,
                                      const CommonOptions& common, ThreadPool& pool) {
   LF_RETURN_IF_ERROR(CheckDensified(light_field, path, options));
-  const DensifyOptions densify = OptionsOf(path, arguments, options);
+  LF_ASSIGN_OR_RETURN(const DensifyOptions densify,
+                      OptionsOf(light_field, path, arguments, options));
   std::vector<OutputFile> outputs = {{densify.store, "the densified store"}};
   if (options.folder.video) outputs.emplace_back(*options.folder.video, "the video", "--video");
   LF_RETURN_IF_ERROR(CheckOutputFiles(std::move(outputs), options.folder.inputs));
   LF_RETURN_IF_ERROR(CreateFolder(options.folder.output_folder));
-  ProgressMeter meter(ParseProgressStyle(common.progress), "LF images");
-  LF_ASSIGN_OR_RETURN(const DensifyReport report,
-                      Densify(light_field, densify, pool, [&](const DensifyProgress& now) {
-                        meter.Update(now.done, now.total, now.step);
-                      }));
+  ProgressMeter meter(ParseProgressStyle(common.progress), "comparisons");
+  LF_ASSIGN_OR_RETURN(
+      const DensifyReport report,
+      Densify(light_field, densify, pool, [&](const DensifyProgress& now) {
+        meter.Update(now.work_done, now.work_total, {{now.step, now.done, now.total}});
+      }));
   if (!report.dense.empty()) {
     LogInfo("--densify makes no virtual LF images: {}", report.dense);
     return DensifiedFilm{std::move(light_field), {}};

@@ -52,7 +52,7 @@ class Bench:
     def densify(self, calibration, *options):
         """Returns (store, report), or (None, the refusal)."""
         store = self.folder / f"{calibration.parent.name}.lfs"
-        words = [self.programs / "lfdensify", calibration, "-o", store, "--overwrite", "--json", "-q",
+        words = [self.programs / "lfdensify", calibration, "-o", store, "--overwrite", "--json", "-q", "--cache", "none",
                  "--progress", "none", *options]
         done = subprocess.run([str(word) for word in words], capture_output=True, text=True)
         if done.returncode in (0, 6):

@@ -12,12 +12,15 @@
 
 #include "lf/core/log.h"
 #include "lf/core/shell_word.h"
-#include "lf/densify/depth_plane.h"
+#include "lf/densify/densify_work.h"
+#include "lf/densify/depth_cache.h"
+#include "lf/densify/depth_planes.h"
 #include "lf/densify/folded_poses.h"
+#include "lf/densify/kept_findings.h"
 #include "lf/densify/recorded_codes.h"
 #include "lf/densify/recorded_values.h"
-#include "lf/densify/stored_planes.h"
 #include "lf/densify/synthesis.h"
+#include "lf/densify/watched_loop.h"
 #include "lf/densify/working_images.h"
 #include "lf/light_field/model/keep_images.h"
 #include "lf/storage/load/measure_footprint.h"
@@ -36,17 +39,6 @@ std::string SettingsInWords(const DensifyPlan& plan, const DensifyChoices& choic
       "densify {}, {} virtual LF images at distances of {}, {} depths, divisor {}, tolerance {}",
       kDensifyVersion, plan.virtual_cameras.size(), plan.distance_w, plan.planes, choices.divisor,
       plan.tolerance);
-}
-
-Result<void> CheckKind(const LightField& light_field) {
-  if (HasVirtual(light_field))
-    return UsageError(
-        "the light field has virtual LF images already: densify the light field that was recorded");
-  if (light_field.encoding.masks_clipped)
-    return InputError(
-        "the light field has brackets (\"lf_clipped\": \"mask\"), which are not supported: densify "
-        "the LF images of one exposure");
-  return {};
 }
 
 Result<void> CheckCount(const LightField& light_field) {
@@ -84,7 +76,9 @@ class Densifier {
         light_field_(WithOpacities(std::move(light_field))),
         options_(options),
         pool_(pool),
-        progress_(progress) {}
+        progress_(progress),
+        cache_(options.cache),
+        work_(light_field_, options.choices) {}
 
   Result<DensifyReport> Run();
 
@@ -98,22 +92,19 @@ class Densifier {
   Result<void> Test();
   Result<void> TestBeyond();
   Result<void> OpenWriter();
-  Result<void> SweepAll();
-  Result<void> Sweep(uint32_t id);
-  Result<void> RefineAll();
-  Result<DepthPlane> Refined(uint32_t id, double* agreeing_count, double* shown_count);
+  void LeaveOutDoneWork();
+  Result<void> FindDepths();
   Result<void> AddRecorded(LfImageId id);
   Result<void> AddVirtual(const RecordedValues& values, size_t i);
   // Makes kind_ hold the values of a recorded LF image.
   void Hold(const StoredKind& kind);
   Result<Loaded> Load(std::span<const uint32_t> ids);
-  // Calls body(i) for each i on all threads, until a call fails or the user interrupts, and shows
-  // progress.
-  Result<void> ForEach(const char* step, size_t count,
+  // Returns a watch of a step, which shows progress.
+  Watch WatchOf(DensifyStep step) const;
+  // Calls body(i) for each i on all threads, until a call fails or the user interrupts. Commits
+  // what was written.
+  Result<void> ForEach(DensifyStep step, size_t count,
                        const std::function<Result<void>(size_t)>& body);
-  PinholeCamera CameraOf(uint32_t id) const {
-    return WorkingCamera(light_field_.Camera(LfImageId{id}), options_.choices.divisor);
-  }
 
   LightFieldIdentity whole_;         // for a packed store, the light field that it was made from
   const RadianceEncoding encoding_;  // for the store
@@ -121,6 +112,8 @@ class Densifier {
   const DensifyOptions& options_;
   ThreadPool& pool_;
   const std::function<void(const DensifyProgress&)>& progress_;
+  DepthCache cache_;
+  DensifyWork work_;
 
   std::unique_ptr<LfImageStore> store_;
   std::unique_ptr<RecordedCodes> recorded_;
@@ -129,38 +122,33 @@ class Densifier {
   DensifyPlan plan_;
   LightField all_;  // recorded and virtual LF cameras
   std::optional<PackedStoreWriter> writer_;
-  std::vector<DepthPlane> depths_;  // [LF image]; empty for those that are not swept
+  std::optional<LfImageKeys> keys_;
+  std::optional<KeptFindings> findings_;
+  std::unique_ptr<DepthPlanes> depths_;
 
   std::mutex mutex_;  // guards all members below
   DensifyReport report_;
   StoredKind kind_;  // kind that holds the values of all recorded LF images
 };
 
-Result<void> Densifier::ForEach(const char* step, size_t count,
+Watch Densifier::WatchOf(DensifyStep step) const {
+  Watch watch{NameOf(step), options_.interrupted};
+  if (!progress_) return watch;
+  watch.tell = [=, this](size_t done, size_t count) {
+    const double share = static_cast<double>(done) / static_cast<double>(count);
+    progress_({NameOf(step), done, count, static_cast<uint64_t>(work_.Done(step, share)),
+               static_cast<uint64_t>(work_.Total())});
+  };
+  return watch;
+}
+
+Result<void> Densifier::ForEach(DensifyStep step, size_t count,
                                 const std::function<Result<void>(size_t)>& body) {
-  std::optional<Error> error;
-  size_t done = 0;
-  pool_.ForEach(count, [&](size_t i) {
-    {
-      const std::lock_guard lock(mutex_);
-      if (error) return;
-      if (options_.interrupted && *options_.interrupted) {
-        error = Error{ErrorKind::kInterrupted,
-                      fmt::format("interrupted after {} of {} ({}): {{resume}} continues", done,
-                                  count, step)};
-        return;
-      }
-    }
-    const Result<void> result = body(i);
-    const std::lock_guard lock(mutex_);
-    if (!result && !error) error = result.error();
-    ++done;
-    if (progress_) progress_({step, done, count});
-  });
-  if (!error) return {};
+  const Result<void> result = ForEachWatched(pool_, count, WatchOf(step), body);
   // Earlier work is committed, unless the disk or the memory failed.
-  if (writer_ && error->kind != ErrorKind::kOutput) LF_RETURN_IF_ERROR(writer_->Commit());
-  return *error;
+  if (!result && writer_ && result.error().kind != ErrorKind::kOutput)
+    LF_RETURN_IF_ERROR(writer_->Commit());
+  return result;
 }
 
 Result<Densifier::Loaded> Densifier::Load(std::span<const uint32_t> ids) {
@@ -212,7 +200,7 @@ Result<void> Densifier::LeaveOutBroken() {
                     "light field that it was made from",
                     light_field_.folder.string()));
   std::vector<std::string> reasons(light_field_.size());
-  LF_RETURN_IF_ERROR(ForEach("checking LF images", light_field_.size(), [&](size_t i) {
+  LF_RETURN_IF_ERROR(ForEach(DensifyStep::kChecking, light_field_.size(), [&](size_t i) {
     const LfImageId id{static_cast<uint32_t>(i)};
     const Intrinsics& k = light_field_.Camera(id).intrinsics;
     const auto loaded = LoadWithoutThrowing(*store_, id, {0, 0, k.width_px, k.height_px},
@@ -249,7 +237,7 @@ Result<void> Densifier::CheckPoses() {
   constexpr size_t kMostChecked = 400;
   if (light_field_.size() > kMostChecked) return {};
   LF_ASSIGN_OR_RETURN(const std::vector<ComparedPair> pairs,
-                      ComparePairs(light_field_, *store_, plan_.serving, plan_.range, pool_));
+                      findings_->Pairs(plan_, WatchOf(DensifyStep::kPairs)));
   const std::vector<std::vector<uint32_t>> groups = ContradictingGroups(light_field_.size(), pairs);
   if (groups.empty()) return {};
   std::vector<std::string> source = {FileArgument(options_.source_name)};
@@ -261,7 +249,7 @@ Result<void> Densifier::CheckPoses() {
 }
 
 Result<void> Densifier::Test() {
-  LF_ASSIGN_OR_RETURN(report_.tests, TestByLeavingOut(light_field_, *store_, plan_, pool_));
+  LF_ASSIGN_OR_RETURN(report_.tests, findings_->Tests(plan_, WatchOf(DensifyStep::kTests)));
   const std::vector<LeftOut> inside = TestsOf(report_.tests, false);
   if (inside.empty())
     LogWarning(
@@ -321,83 +309,38 @@ Result<void> Densifier::OpenWriter() {
                     : PackedStoreWriter::Create(options_.store, all_, plan, std::move(lock));
   if (!writer) return writer.error();
   writer_.emplace(*std::move(writer));
+  depths_ = std::make_unique<DepthPlanes>(light_field_, plan_, *images_, *writer_, *keys_, cache_,
+                                          options_.interrupted);
+  LeaveOutDoneWork();
   return {};
 }
 
-Result<void> Densifier::Sweep(uint32_t id) {
-  const PinholeCamera camera = CameraOf(id);
-  if (writer_->HasPlane(LfImageId{id}, PlaneKind::kSwept)) {
-    LF_ASSIGN_OR_RETURN(const Image<uint16_t> stored,
-                        writer_->ReadPlane(LfImageId{id}, PlaneKind::kSwept));
-    depths_[id] = CutTo(stored, camera.intrinsics.width_px, camera.intrinsics.height_px);
-    return {};
-  }
-  std::vector<uint32_t> ids{id};
-  ids.insert(ids.end(), plan_.compare_with[id].begin(), plan_.compare_with[id].end());
-  LF_ASSIGN_OR_RETURN(const Loaded loaded, Load(ids));
-  const ThreadCpuTimer timer;
-  std::vector<SweepView> views;
-  for (size_t k = 1; k < loaded.size(); ++k) views.push_back(ViewFrom(*loaded[0], *loaded[k]));
-  depths_[id] = SweepDepths(*loaded[0], views, plan_.range, plan_.planes);
-  {
-    const std::lock_guard lock(mutex_);
-    report_.sweep_cpu_s += static_cast<double>(timer.Nanoseconds()) * 1e-9;
-    report_.swept_pixels += static_cast<double>(depths_[id].pixels().size());
-  }
-  const Intrinsics& k = light_field_.Camera(LfImageId{id}).intrinsics;
-  return writer_->AddPlane(
-      LfImageId{id}, PlaneKind::kSwept,
-      PaddedTo(depths_[id], PlaneSizeOf(k.width_px, k.height_px, options_.choices.divisor)));
+// Work of an earlier run is not work of this one.
+void Densifier::LeaveOutDoneWork() {
+  const auto share = [](size_t missing, size_t count) {
+    return count == 0 ? 0 : static_cast<double>(missing) / static_cast<double>(count);
+  };
+  size_t recorded = 0, made = 0;
+  for (uint32_t i = 0; i < all_.size(); ++i)
+    if (!writer_->Has(LfImageId{i})) ++(i < light_field_.size() ? recorded : made);
+  work_.Scale(DensifyStep::kRecorded, share(recorded, light_field_.size()));
+  work_.Scale(DensifyStep::kDepths, share(depths_->MissingCount(), plan_.swept.size()));
+  work_.Scale(DensifyStep::kVirtual, share(made, plan_.virtual_cameras.size()));
 }
 
-Result<void> Densifier::SweepAll() {
-  depths_.resize(light_field_.size());
-  return ForEach("depths", plan_.swept.size(), [&](size_t i) { return Sweep(plan_.swept[i]); });
-}
+Result<void> Densifier::FindDepths() {
+  const DepthPlanes::Loop loop = [this](DensifyStep step, size_t count, const auto& body) {
+    return ForEach(step, count, body);
+  };
 
-Result<DepthPlane> Densifier::Refined(uint32_t id, double* agreeing_count, double* shown_count) {
-  constexpr int kWanted = 2;
-  std::vector<DepthView> views;
-  for (const uint32_t other : plan_.compare_with[id])
-    if (!depths_[other].empty())
-      views.push_back({&depths_[other], MapBetween(CameraOf(id), CameraOf(other))});
-  LF_ASSIGN_OR_RETURN(const auto image, images_->Get(LfImageId{id}));
-  const Image<uint8_t> agreeing =
-      CountAgreeing(depths_[id], image->tones, views, plan_.range, plan_.tolerance);
-  const int wanted = std::min(kWanted, static_cast<int>(views.size()));
-  *agreeing_count =
-      static_cast<double>(std::count_if(agreeing.pixels().begin(), agreeing.pixels().end(),
-                                        [&](uint8_t count) { return count >= wanted; }));
-  *shown_count = static_cast<double>(ShownCount(image->tones));
-  return FillDisagreeing(depths_[id], agreeing, wanted, image->tones, plan_.range,
-                         plan_.shift_per_depth_px);
-}
-
-Result<void> Densifier::RefineAll() {
-  constexpr int kRounds = 2;
-  for (int round = 0; round < kRounds; ++round) {
-    std::vector<DepthPlane> refined(depths_.size());
-    double agreeing = 0, shown = 0;
-    LF_RETURN_IF_ERROR(
-        ForEach("comparing depths", plan_.swept.size(), [&](size_t i) -> Result<void> {
-          const uint32_t id = plan_.swept[i];
-          double agreeing_count = 0, shown_count = 0;
-          LF_ASSIGN_OR_RETURN(refined[id], Refined(id, &agreeing_count, &shown_count));
-          const std::lock_guard lock(mutex_);
-          agreeing += agreeing_count;
-          shown += shown_count;
-          return {};
-        }));
-    depths_ = std::move(refined);
-    report_.agreeing_share = agreeing / std::max(shown, 1.0);
-  }
-  return ForEach("storing depths", plan_.sources.size(), [&](size_t i) -> Result<void> {
-    const LfImageId id{plan_.sources[i]};
-    if (writer_->HasPlane(id, PlaneKind::kDisparity)) return {};
-    return writer_->AddPlane(id, PlaneKind::kDisparity,
-                             AsRecorded(depths_[id.value], light_field_.Camera(id).intrinsics,
-                                        options_.choices.divisor));
-  });
+  LF_RETURN_IF_ERROR(depths_->Search(loop));
+  LF_RETURN_IF_ERROR(depths_->MakeAgree(loop));
+  LF_RETURN_IF_ERROR(depths_->Store(loop));
+  report_.cached_planes = depths_->facts().cached;
+  report_.sweep_cpu_s = depths_->facts().cpu_s;
+  report_.swept_pixels = depths_->facts().searched_pixels;
+  report_.agreeing_share = depths_->facts().agreeing_share;
+  return {};
 }
 
 void Densifier::Hold(const StoredKind& kind) {
@@ -428,8 +371,11 @@ Result<void> Densifier::AddVirtual(const RecordedValues& values, size_t i) {
   std::vector<Source> sources;
   for (size_t k = 0; k < ids.size(); ++k)
     sources.push_back(
-        {loaded[k].get(), &depths_[ids[k]], static_cast<float>(wanted.sources[k].weight)});
-  const VirtualImage image = Synthesize(wanted.camera, sources, plan_.range, plan_.tolerance);
+        {loaded[k].get(), &depths_->Of(ids[k]), static_cast<float>(wanted.sources[k].weight)});
+  const VirtualImage image =
+      Synthesize(wanted.camera, sources, plan_.range, plan_.tolerance, options_.interrupted);
+  // The loop returns an error of its own.
+  if (IsSet(options_.interrupted)) return Error{ErrorKind::kInterrupted, "interrupted"};
   {
     const std::lock_guard lock(mutex_);
     const auto pixels = static_cast<double>(image.light.width()) * image.light.height();
@@ -452,9 +398,16 @@ Result<DensifyReport> Densifier::Run() {
   LF_RETURN_IF_ERROR(LeaveOutBroken());
   LF_ASSIGN_OR_RETURN(recorded_, RecordedCodes::Open(light_field_));
   LF_RETURN_IF_ERROR(CheckCount(light_field_));
+  keys_.emplace(light_field_, kDensifyVersion);
+  findings_.emplace(light_field_, *store_, *keys_, cache_, pool_);
   images_ = std::make_unique<WorkingImages>(light_field_, *store_, options_.choices.divisor,
                                             options_.memory_bytes);
-  LF_ASSIGN_OR_RETURN(plan_, PlanDensify(light_field_, *store_, options_.choices, pool_));
+  LF_ASSIGN_OR_RETURN(
+      plan_, PlanDensify(light_field_, *store_, options_.choices, pool_,
+                         [this](std::span<const std::vector<uint32_t>> compare_with) {
+                           return findings_->Range(compare_with, WatchOf(DensifyStep::kRange));
+                         }));
+  work_.Plan(light_field_, options_.choices, plan_);
   report_.dense = plan_.dense;
   report_.recorded_count = light_field_.size();
   report_.virtual_count = plan_.virtual_cameras.size();
@@ -471,13 +424,12 @@ Result<DensifyReport> Densifier::Run() {
 
   LF_RETURN_IF_ERROR(OpenWriter());
   if (report_.was_there) return std::move(report_);
-  LF_RETURN_IF_ERROR(ForEach("recorded LF images", light_field_.size(), [&](size_t i) {
+  LF_RETURN_IF_ERROR(ForEach(DensifyStep::kRecorded, light_field_.size(), [&](size_t i) {
     return AddRecorded(LfImageId{static_cast<uint32_t>(i)});
   }));
-  LF_RETURN_IF_ERROR(SweepAll());
-  LF_RETURN_IF_ERROR(RefineAll());
+  LF_RETURN_IF_ERROR(FindDepths());
   const RecordedValues values(light_field_.encoding, kind_);
-  LF_RETURN_IF_ERROR(ForEach("virtual LF images", plan_.virtual_cameras.size(),
+  LF_RETURN_IF_ERROR(ForEach(DensifyStep::kVirtual, plan_.virtual_cameras.size(),
                              [&](size_t i) { return AddVirtual(values, i); }));
   if (report_.made_pixels > 0) report_.weak_share /= report_.made_pixels;
   LF_RETURN_IF_ERROR(writer_->DropPlanes(PlaneKind::kSwept));

@@ -13,6 +13,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -30,6 +31,9 @@ struct DensifyOptions {
   std::filesystem::path store;  // path of the packed store, such as STORE.lfs
   DensifyChoices choices;
   size_t memory_bytes = size_t{2} << 30;  // for LF images that are kept in memory
+  // Folder in which depth planes are kept for other calls (depth_cache.h); empty: they are not
+  // kept.
+  std::filesystem::path cache = {};
   // True: resumes an unfinished store, or begins a new one if there is none. If the store is
   // complete, it must match the options and the light field, except for its background, and is
   // kept.
@@ -43,9 +47,14 @@ struct DensifyOptions {
 };
 
 struct DensifyProgress {
-  const char* step = "";  // what is being done
+  const char* step = "";  // items of the step that is being done
   size_t done = 0;
   size_t total = 0;
+  // Work of all steps of this call, in comparisons of a pixel with a neighbour at one depth; other
+  // work counts as the comparisons that take as long. The total is a guess until the range of
+  // depths is known.
+  uint64_t work_done = 0;
+  uint64_t work_total = 1;
 };
 
 struct DensifyReport {
@@ -70,6 +79,7 @@ struct DensifyReport {
   double agreeing_share = 0;
   // Mean of VirtualImage::weak_share of the virtual LF images that were made.
   double weak_share = 0;
+  size_t cached_planes = 0;  // number of depth planes that were kept by an earlier call
   // Work of this call: CPU time, and the number of pixels that were swept and made.
   double sweep_cpu_s = 0, synthesis_cpu_s = 0;
   double swept_pixels = 0, made_pixels = 0;

@@ -249,6 +249,22 @@ void FindSources(DensifyPlan* plan) {
 
 }  // namespace
 
+Result<void> CheckKind(const LightField& light_field) {
+  if (HasVirtual(light_field))
+    return UsageError(
+        "the light field has virtual LF images already: densify the light field that was recorded");
+  if (light_field.encoding.masks_clipped)
+    return InputError(
+        "the light field has brackets (\"lf_clipped\": \"mask\"), which are not supported: densify "
+        "the LF images of one exposure");
+  return {};
+}
+
+bool IsWidened(const DensifyPlan& plan) {
+  return std::any_of(plan.virtual_cameras.begin(), plan.virtual_cameras.end(),
+                     [](const VirtualCamera& camera) { return camera.is_beyond; });
+}
+
 void DropBeyond(DensifyPlan* plan) {
   std::erase_if(plan->virtual_cameras,
                 [](const VirtualCamera& camera) { return camera.is_beyond; });
@@ -265,7 +281,8 @@ double ToleranceFor(const InverseDepths& range, int planes, double shift_per_dep
 }
 
 Result<DensifyPlan> PlanDensify(const LightField& light_field, const LfImageStore& store,
-                                const DensifyChoices& choices, ThreadPool& pool) {
+                                const DensifyChoices& choices, ThreadPool& pool,
+                                const RangeSearch& search) {
   DensifyPlan plan;
   plan.is_film = !choices.frames.empty();
   plan.divisor = choices.divisor;
@@ -282,7 +299,9 @@ Result<DensifyPlan> PlanDensify(const LightField& light_field, const LfImageStor
   if (choices.depths) {
     plan.range = {1 / choices.depths->far_w, 1 / choices.depths->near_w};
   } else {
-    LF_ASSIGN_OR_RETURN(plan.range, FindInverseDepths(light_field, store, plan.compare_with, pool));
+    LF_ASSIGN_OR_RETURN(plan.range,
+                        search ? search(plan.compare_with)
+                               : FindInverseDepths(light_field, store, plan.compare_with, pool));
   }
   plan.shift_per_depth_px = ShiftOf(light_field, plan, choices.divisor);
   LF_RETURN_IF_ERROR(CheckReach(light_field, plan, choices.divisor, choices.force));

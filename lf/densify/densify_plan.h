@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -65,6 +66,9 @@ struct DensifyPlan {
   double ShiftPx() const { return (range.greatest - range.least) * shift_per_depth_px; }
 };
 
+// kInput, kUsage: the light field has brackets, or virtual LF images already.
+Result<void> CheckKind(const LightField& light_field);
+
 // Returns the number of inverse depths to compare if points of the scene shift by this much between
 // LF images.
 int PlanesFor(double shift_px);
@@ -72,15 +76,24 @@ int PlanesFor(double shift_px);
 // of shift, or one compared depth.
 double ToleranceFor(const InverseDepths& range, int planes, double shift_per_depth_px);
 
+// Finds the range of inverse depths.
+//   compare_with  as DensifyPlan::compare_with
+using RangeSearch =
+    std::function<Result<InverseDepths>(std::span<const std::vector<uint32_t>> compare_with)>;
+
 // Makes the plan, or says why the light field cannot be densified.
-//   store  of the light field, with Mosaics::kToRgb
+//   store   of the light field, with Mosaics::kToRgb
+//   search  in place of FindInverseDepths(), if it is given
 // kInput: LF images too far from one another (the message has the shift or the angle); without
 // frames, fewer than three LF cameras, or all on one line, or all around the scene; or an error of
 // FindInverseDepths(). kUsage: no virtual LF image contributes to the frames, or most_virtual is
 // too small.
 Result<DensifyPlan> PlanDensify(const LightField& light_field, const LfImageStore& store,
-                                const DensifyChoices& choices, ThreadPool& pool);
+                                const DensifyChoices& choices, ThreadPool& pool,
+                                const RangeSearch& search = {});
 
+// Returns true if virtual LF cameras stand beyond the hull of the recorded ones.
+bool IsWidened(const DensifyPlan& plan);
 // Leaves out the virtual LF cameras beyond the hull of the recorded ones.
 void DropBeyond(DensifyPlan* plan);
 

@@ -53,6 +53,9 @@ std::string DensifyText(const DensifyReport& report, const DensifyOptions& optio
       text += fmt::format("          {:.1f} dB (mean: {:.1f} dB) at {:.1f} degrees  {}\n",
                           test.virtual_psnr_db, test.blend_psnr_db, test.angle_deg, test.name);
   }
+  if (!options.cache.empty())
+    text += fmt::format("cache     {}: had {} depth planes of an earlier call\n",
+                        options.cache.string(), report.cached_planes);
   text += fmt::format(
       "speed     {:.0f} ns per swept pixel, {:.0f} ns per virtual pixel (CPU); {}\n",
       NanosecondsPer(report.sweep_cpu_s, report.swept_pixels),
@@ -86,6 +89,9 @@ std::string DensifyJson(const DensifyReport& report, const DensifyOptions& optio
       {"weak_share", report.weak_share},
       {"skipped", skipped},
       {"tests", tests},
+      {"cache", options.cache.empty() ? nlohmann::ordered_json()
+                                      : nlohmann::ordered_json(options.cache.string())},
+      {"cached_planes", report.cached_planes},
       {"swept_pixels", report.swept_pixels},
       {"sweep_cpu_s", report.sweep_cpu_s},
       {"virtual_pixels", report.made_pixels},

@@ -18,6 +18,8 @@ class DensifyReportTest : public ::testing::Test {
     report_.spacing_px = 1;
     report_.skipped = {{"b.png", "is cut off"}};
     report_.tests = {{"a.png", 40, 36.5, 2}};
+    options_.cache = "a.depths";
+    report_.cached_planes = 7;
   }
   DensifyOptions options_;
   DensifyReport report_;
@@ -28,6 +30,7 @@ TEST_F(DensifyReportTest, TextStatesDepthsAndTests) {
   for (const char* part :
        {"d.lfs: 24 recorded and 100 virtual LF images\n", "depths    2 to infinity; 30 were",
         "skipped   b.png: is cut off\n", "3.5 dB better than a mean", "40.0 dB (mean: 36.5 dB)",
+        "cache     a.depths: had 7 depth planes of an earlier call\n",
         "; 1 min 5 s\nnext: lfrenderer\n"})
     EXPECT_NE(text.find(part), std::string::npos) << part << "\nis not in\n" << text;
   EXPECT_EQ(text.find("note:"), std::string::npos);
@@ -41,8 +44,11 @@ TEST_F(DensifyReportTest, TextStatesDepthsAndTests) {
 TEST_F(DensifyReportTest, JsonHasAllTestsAndSkippedImages) {
   const std::string json = DensifyJson(report_, options_, 65);
   for (const char* part : {"\"recorded\": 24", "\"virtual\": 100", "\"lf_image\": \"a.png\"",
-                           "\"reason\": \"is cut off\"", "\"total_s\": 65.0"})
+                           "\"reason\": \"is cut off\"", "\"total_s\": 65.0",
+                           "\"cache\": \"a.depths\"", "\"cached_planes\": 7"})
     EXPECT_NE(json.find(part), std::string::npos) << part << "\nis not in\n" << json;
+  options_.cache.clear();
+  EXPECT_NE(DensifyJson(report_, options_, 65).find("\"cache\": null"), std::string::npos);
 }
 
 TEST_F(DensifyReportTest, TheFirstMissingImageIsNamed) {

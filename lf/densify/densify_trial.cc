@@ -4,18 +4,23 @@
 #include <utility>
 
 #include "lf/core/check.h"
+#include "lf/densify/working_image.h"
+#include "lf/storage/load/open_store.h"
 
 namespace lf {
 
-Result<DensifyTrial> TryDensify(const LightField& light_field, const LfImageStore& store,
-                                const DensifyChoices& choices, ThreadPool& pool) {
+Result<DensifyTrial> TryDensify(const LightField& light_field, const DensifyChoices& choices,
+                                ThreadPool& pool) {
   LF_CHECK(!choices.frames.empty());
+  LF_RETURN_IF_ERROR(CheckKind(light_field));
   DensifyTrial trial;
-  LF_ASSIGN_OR_RETURN(const DensifyPlan plan, PlanDensify(light_field, store, choices, pool));
+  const LightField field = WithOpacities(light_field);
+  LF_ASSIGN_OR_RETURN(const auto store, OpenStore(field, Mosaics::kToRgb));
+  LF_ASSIGN_OR_RETURN(const DensifyPlan plan, PlanDensify(field, *store, choices, pool));
   trial.filled_radius_w = plan.filled_radius_w;
   trial.objection = plan.dense;
   if (!trial.objection.empty()) return trial;
-  LF_ASSIGN_OR_RETURN(trial.tests, TestByLeavingOut(light_field, store, plan, pool));
+  LF_ASSIGN_OR_RETURN(trial.tests, TestByLeavingOut(field, *store, plan, pool));
   trial.objection = ObjectionOf(TestsOf(trial.tests, false), plan.range, true);
   return trial;
 }

@@ -10,7 +10,6 @@
 #include "lf/densify/densify_plan.h"
 #include "lf/densify/self_test.h"
 #include "lf/light_field/model/light_field.h"
-#include "lf/storage/load/lf_image_store.h"
 
 namespace lf {
 
@@ -24,9 +23,8 @@ struct DensifyTrial {
 
 // Makes the plan for a film and tests it, at a fraction of the cost of Densify().
 //   choices  with frames
-//   store    of the light field, with Mosaics::kToRgb
-// Errors as PlanDensify() and TestByLeavingOut(). kInput: the light field cannot be densified.
-Result<DensifyTrial> TryDensify(const LightField& light_field, const LfImageStore& store,
-                                const DensifyChoices& choices, ThreadPool& pool);
+// Errors as CheckKind(), OpenStore(), PlanDensify() and TestByLeavingOut().
+Result<DensifyTrial> TryDensify(const LightField& light_field, const DensifyChoices& choices,
+                                ThreadPool& pool);
 
 }  // namespace lf

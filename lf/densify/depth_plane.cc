@@ -26,10 +26,10 @@ std::vector<PixelRect> TilesOf(int width, int height) {
   return tiles;
 }
 
-DepthPlane MedianOfNine(const DepthPlane& plane) {
+DepthPlane MedianOfNine(const DepthPlane& plane, InterruptFlag interrupted) {
   DepthPlane smooth(plane.width(), plane.height());
   const int last_x = plane.width() - 1, last_y = plane.height() - 1;
-  for (int y = 0; y <= last_y; ++y)
+  for (int y = 0; y <= last_y && !IsSet(interrupted); ++y)
     for (int x = 0; x <= last_x; ++x) {
       std::array<uint16_t, 9> values;
       size_t count = 0;
@@ -52,32 +52,33 @@ int DifferenceOf(const uint16_t* a, const uint16_t* b) {
 }  // namespace
 
 DepthPlane SweepDepths(const WorkingImage& reference, std::span<const SweepView> views,
-                       const InverseDepths& range, int planes) {
+                       const InverseDepths& range, int planes, InterruptFlag interrupted) {
   const int width = reference.width(), height = reference.height();
   DepthPlane plane(width, height);
   const std::vector<PixelRect> tiles = TilesOf(width, height);
   const float scale = static_cast<float>(InverseDepths::kLast / (planes - 1));
   for (const PixelRect& tile : tiles) {
+    if (IsSet(interrupted)) return plane;
     const PixelRect around = Intersection({tile.x_begin - kMargin, tile.y_begin - kMargin,
                                            tile.x_end + kMargin, tile.y_end + kMargin},
                                           {0, 0, width, height});
     MatchingCosts costs;
-    ComputeMatchingCosts(reference, views, range, planes, around, &costs);
-    const ChosenPlanes chosen = ChoosePlanes(costs, reference.tones, false);
+    ComputeMatchingCosts(reference, views, range, planes, around, &costs, interrupted);
+    const ChosenPlanes chosen = ChoosePlanes(costs, reference.tones, false, interrupted);
     for (int y = tile.y_begin; y < tile.y_end; ++y)
       for (int x = tile.x_begin; x < tile.x_end; ++x) {
         const float place = chosen.place.at(x - around.x_begin, y - around.y_begin);
         plane.at(x, y) = static_cast<uint16_t>(1.5f + place * scale);
       }
   }
-  return MedianOfNine(plane);
+  return MedianOfNine(plane, interrupted);
 }
 
 Image<uint8_t> CountAgreeing(const DepthPlane& plane, const Image<uint16_t>& tones,
                              std::span<const DepthView> views, const InverseDepths& range,
-                             double tolerance) {
+                             double tolerance, InterruptFlag interrupted) {
   Image<uint8_t> agreeing(plane.width(), plane.height());
-  for (int y = 0; y < plane.height(); ++y)
+  for (int y = 0; y < plane.height() && !IsSet(interrupted); ++y)
     for (int x = 0; x < plane.width(); ++x) {
       if (IsTransparent(&tones.at(x, y))) continue;
       const auto z = static_cast<float>(range.Of(plane.at(x, y)));
@@ -100,7 +101,7 @@ Image<uint8_t> CountAgreeing(const DepthPlane& plane, const Image<uint16_t>& ton
 
 DepthPlane FillDisagreeing(const DepthPlane& plane, const Image<uint8_t>& agreeing, int wanted,
                            const Image<uint16_t>& tones, const InverseDepths& range,
-                           double shift_per_depth_px) {
+                           double shift_per_depth_px, InterruptFlag interrupted) {
   constexpr int kReach = 60;
   // Cost of a neighbouring depth, in tones, per pixel of shift and per pixel of distance.
   constexpr float kPerShift = 2, kPerDistance = 0.5f;
@@ -110,7 +111,7 @@ DepthPlane FillDisagreeing(const DepthPlane& plane, const Image<uint8_t>& agreei
   const auto per_number = static_cast<float>(std::min(kPerShift * shift_per_depth_px * range.Step(),
                                                       kMostForDepth / InverseDepths::kLast));
   DepthPlane filled = plane;
-  for (int y = 0; y < plane.height(); ++y)
+  for (int y = 0; y < plane.height() && !IsSet(interrupted); ++y)
     for (int x = 0; x < plane.width(); ++x) {
       if (agreeing.at(x, y) >= wanted) continue;
       float best = INFINITY;

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -37,7 +36,7 @@ int GoodCost(const Image<uint16_t>& tones, const ChosenPlanes& chosen) {
 // Appends the inverse depths of the pixels of one LF image that are sure.
 void AppendSure(const LightField& light_field, const std::optional<Vec3>& subject,
                 const WorkingImage& reference, std::span<const SweepView> views,
-                std::vector<double>* found) {
+                InterruptFlag interrupted, std::vector<double>* found) {
   constexpr double kLeastStep_px = 0.5;
   constexpr int kMostSearched = 220;
   constexpr int kClear = 6;
@@ -54,8 +53,8 @@ void AppendSure(const LightField& light_field, const std::optional<Vec3>& subjec
       std::clamp(static_cast<int>(extent * shift / kLeastStep_px) + 1, 8, kMostSearched);
   MatchingCosts costs;
   ComputeMatchingCosts(reference, views, range, planes,
-                       {0, 0, reference.width(), reference.height()}, &costs);
-  const ChosenPlanes chosen = ChoosePlanes(costs, reference.tones, true);
+                       {0, 0, reference.width(), reference.height()}, &costs, interrupted);
+  const ChosenPlanes chosen = ChoosePlanes(costs, reference.tones, true, interrupted);
   const int good = GoodCost(reference.tones, chosen);
   // A depth at the end of the range may lie beyond it, or match by chance. Only a stated range has
   // a far end that means something.
@@ -122,35 +121,29 @@ InverseDepths SearchedRange(const PinholeCamera& camera, double shift_per_depth_
 
 Result<InverseDepths> FindInverseDepths(const LightField& light_field, const LfImageStore& store,
                                         std::span<const std::vector<uint32_t>> compare_with,
-                                        ThreadPool& pool) {
+                                        ThreadPool& pool, const Watch& watch) {
   constexpr size_t kLeastDepths = 200;
   const int divisor = std::max(1, light_field.intrinsics.front().width_px / kSearchedWidth);
   WorkingImages images(light_field, store, divisor, std::numeric_limits<size_t>::max());
   const std::optional<Vec3> subject = AxesMeetingPoint(light_field);
   const size_t count = std::min(kReferences, light_field.size());
   std::vector<std::vector<double>> depths(count);
-  std::mutex mutex;
-  std::optional<Error> error;
-  pool.ForEach(count, [&](size_t i) {
+  LF_RETURN_IF_ERROR(ForEachWatched(pool, count, watch, [&](size_t i) -> Result<void> {
     const size_t id = count == 1 ? 0 : i * (light_field.size() - 1) / (count - 1);
     std::vector<std::shared_ptr<const WorkingImage>> loaded;
-    const auto load = [&](uint32_t wanted) {
-      auto image = images.Get(LfImageId{wanted});
-      const std::lock_guard lock(mutex);
-      if (image)
-        loaded.push_back(*image);
-      else
-        error = image.error();
-      return image.has_value();
-    };
-    if (!load(static_cast<uint32_t>(id))) return;
-    for (size_t k = 0; k < std::min(kMostViews, compare_with[id].size()); ++k)
-      if (!load(compare_with[id][k])) return;
+    std::vector<uint32_t> wanted{static_cast<uint32_t>(id)};
+    const std::vector<uint32_t>& others = compare_with[id];
+    wanted.insert(wanted.end(), others.begin(),
+                  others.begin() + static_cast<ptrdiff_t>(std::min(kMostViews, others.size())));
+    for (const uint32_t one : wanted) {
+      LF_ASSIGN_OR_RETURN(auto image, images.Get(LfImageId{one}));
+      loaded.push_back(std::move(image));
+    }
     std::vector<SweepView> views;
     for (size_t k = 1; k < loaded.size(); ++k) views.push_back(ViewFrom(*loaded[0], *loaded[k]));
-    AppendSure(light_field, subject, *loaded[0], views, &depths[i]);
-  });
-  if (error) return *error;
+    AppendSure(light_field, subject, *loaded[0], views, watch.interrupted, &depths[i]);
+    return {};
+  }));
   size_t found = 0;
   for (const std::vector<double>& of_image : depths) found += of_image.size();
   if (found < kLeastDepths)

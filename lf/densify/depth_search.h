@@ -12,6 +12,7 @@
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
 #include "lf/densify/inverse_depths.h"
+#include "lf/densify/watched_loop.h"
 #include "lf/light_field/model/light_field.h"
 #include "lf/storage/load/lf_image_store.h"
 
@@ -37,9 +38,9 @@ InverseDepths SearchedRange(const PinholeCamera& camera, double shift_per_depth_
 // does not go beyond infinity unless the depths of many pixels do, as those of rectified images
 // may.
 //   compare_with  CompareWith() of the LF cameras
-// kInput: an LF image cannot be loaded, or fewer than 200 pixels have a sure depth.
+// kInput: an LF image cannot be loaded, or fewer than 200 pixels have a sure depth. kInterrupted.
 Result<InverseDepths> FindInverseDepths(const LightField& light_field, const LfImageStore& store,
                                         std::span<const std::vector<uint32_t>> compare_with,
-                                        ThreadPool& pool);
+                                        ThreadPool& pool, const Watch& watch = {});
 
 }  // namespace lf

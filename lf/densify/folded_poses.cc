@@ -9,7 +9,6 @@
 #include <cstring>
 #include <filesystem>
 #include <limits>
-#include <mutex>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -27,12 +26,12 @@ constexpr int kComparedWidth = 100;
 constexpr size_t kNearest = 6;
 
 ChosenPlanes Swept(const WorkingImage& reference, const WorkingImage& image,
-                   const InverseDepths& range, int planes) {
+                   const InverseDepths& range, int planes, InterruptFlag interrupted) {
   const SweepView view[] = {ViewFrom(reference, image)};
   MatchingCosts costs;
   ComputeMatchingCosts(reference, view, range, planes,
-                       {0, 0, reference.width(), reference.height()}, &costs);
-  return ChoosePlanes(costs, reference.tones, false);
+                       {0, 0, reference.width(), reference.height()}, &costs, interrupted);
+  return ChoosePlanes(costs, reference.tones, false, interrupted);
 }
 
 // Returns the share of the textured pixels of one image that the other one confirms; nullopt if few
@@ -67,11 +66,12 @@ std::optional<double> ConfirmedShare(const WorkingImage& image, const ChosenPlan
 
 // Returns the larger share of both; nullopt if few pixels have texture.
 std::optional<double> AgreeingShare(const WorkingImage& a, const WorkingImage& b,
-                                    const InverseDepths& range) {
+                                    const InverseDepths& range, InterruptFlag interrupted) {
   constexpr double kStep_px = 0.5, kFewest = 8, kMost = 160;
   const double shift_px = (range.greatest - range.least) * ShiftPerInverseDepth(a.camera, b.camera);
   const int planes = static_cast<int>(std::clamp(shift_px / kStep_px + 2, kFewest, kMost));
-  const ChosenPlanes of_a = Swept(a, b, range, planes), of_b = Swept(b, a, range, planes);
+  const ChosenPlanes of_a = Swept(a, b, range, planes, interrupted);
+  const ChosenPlanes of_b = Swept(b, a, range, planes, interrupted);
   const std::optional<double> in_a = ConfirmedShare(a, of_a, b, of_b, range, planes);
   const std::optional<double> in_b = ConfirmedShare(b, of_b, a, of_a, range, planes);
   return std::max(in_a, in_b);
@@ -132,7 +132,8 @@ std::string RunsText(const LightField& light_field, std::span<const uint32_t> id
 Result<std::vector<ComparedPair>> ComparePairs(const LightField& light_field,
                                                const LfImageStore& store,
                                                std::span<const uint32_t> ids,
-                                               const InverseDepths& range, ThreadPool& pool) {
+                                               const InverseDepths& range, ThreadPool& pool,
+                                               const Watch& watch) {
   std::set<std::pair<uint32_t, uint32_t>> wanted;
   const auto distance = [&](uint32_t a, uint32_t b) {
     return (light_field.Camera(LfImageId{a}).CentreWorld() -
@@ -151,19 +152,13 @@ Result<std::vector<ComparedPair>> ComparePairs(const LightField& light_field,
   WorkingImages images(light_field, store, divisor, std::numeric_limits<size_t>::max());
   const std::vector<std::pair<uint32_t, uint32_t>> list(wanted.begin(), wanted.end());
   std::vector<std::optional<double>> shares(list.size());
-  std::mutex mutex;
-  std::optional<Error> error;
-  pool.ForEach(list.size(), [&](size_t i) {
-    const auto first = images.Get(LfImageId{list[i].first});
-    const auto second = images.Get(LfImageId{list[i].second});
-    if (first && second) {
-      shares[i] = AgreeingShare(**first, **second, range);
-      return;
-    }
-    const std::lock_guard lock(mutex);
-    error = first ? second.error() : first.error();
-  });
-  if (error) return *error;
+  const auto compare = [&](size_t i) -> Result<void> {
+    LF_ASSIGN_OR_RETURN(const auto first, images.Get(LfImageId{list[i].first}));
+    LF_ASSIGN_OR_RETURN(const auto second, images.Get(LfImageId{list[i].second}));
+    shares[i] = AgreeingShare(*first, *second, range, watch.interrupted);
+    return {};
+  };
+  LF_RETURN_IF_ERROR(ForEachWatched(pool, list.size(), watch, compare));
   std::vector<ComparedPair> pairs;
   for (size_t i = 0; i < list.size(); ++i)
     if (shares[i])

@@ -15,6 +15,7 @@
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
 #include "lf/densify/inverse_depths.h"
+#include "lf/densify/watched_loop.h"
 #include "lf/light_field/model/light_field.h"
 #include "lf/storage/load/lf_image_store.h"
 
@@ -33,11 +34,12 @@ struct ComparedPair {
 // about 100 pixels. Pairs with too little texture are left out.
 //   ids    the LF images that are compared
 //   range  of the scene
-// Errors of LoadWorkingImage().
+// Errors of LoadWorkingImage(); kInterrupted.
 Result<std::vector<ComparedPair>> ComparePairs(const LightField& light_field,
                                                const LfImageStore& store,
                                                std::span<const uint32_t> ids,
-                                               const InverseDepths& range, ThreadPool& pool);
+                                               const InverseDepths& range, ThreadPool& pool,
+                                               const Watch& watch = {});
 
 // Returns groups of LF images that contradict each other, the largest first, each ascending; empty
 // if there is no contradiction. A pair agrees if its share is at least 2/5 of what LF images

@@ -78,7 +78,7 @@ SweepView ViewFrom(const WorkingImage& reference, const WorkingImage& image) {
 
 void ComputeMatchingCosts(const WorkingImage& reference, std::span<const SweepView> views,
                           const InverseDepths& range, int planes, const PixelRect& rect,
-                          MatchingCosts* result) {
+                          MatchingCosts* result, InterruptFlag interrupted) {
   LF_CHECK(!views.empty() && planes >= 2 && !rect.empty());
   const int width = rect.width(), last_y = reference.height() - 1, last_x = reference.width() - 1;
   result->rect = rect;
@@ -115,7 +115,7 @@ void ComputeMatchingCosts(const WorkingImage& reference, std::span<const SweepVi
 
   for (int y = std::max(rect.y_begin - 1, 0); y <= std::min(rect.y_begin, last_y); ++y) compare(y);
   std::vector<int> shown;  // columns of the pixels that can be carved
-  for (int y = rect.y_begin; y < rect.y_end; ++y) {
+  for (int y = rect.y_begin; y < rect.y_end && !IsSet(interrupted); ++y) {
     if (y < last_y) compare(y + 1);
     shown.clear();
     for (int x = rect.x_begin; x < rect.x_end; ++x)

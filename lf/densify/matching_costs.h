@@ -9,6 +9,7 @@
 #include "lf/core/large_vector.h"
 #include "lf/densify/inverse_depths.h"
 #include "lf/densify/pair_map.h"
+#include "lf/densify/watched_loop.h"
 #include "lf/densify/working_image.h"
 
 namespace lf {
@@ -52,9 +53,10 @@ struct MatchingCosts {
 // Szeliski and Chai, "Handling occlusions in dense multi-view stereo", CVPR 2001). No side explains
 // a view that is transparent there (WorkingImage::empty): the cost is then kCarved, unless the
 // pixel is transparent.
-//   views  one or more
+//   views        one or more
+//   interrupted  once it is set, the result must not be used
 void ComputeMatchingCosts(const WorkingImage& reference, std::span<const SweepView> views,
                           const InverseDepths& range, int planes, const PixelRect& rect,
-                          MatchingCosts* result);
+                          MatchingCosts* result, InterruptFlag interrupted = nullptr);
 
 }  // namespace lf

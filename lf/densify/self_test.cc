@@ -7,8 +7,6 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <mutex>
-#include <optional>
 #include <utility>
 
 #include "lf/core/median.h"
@@ -165,7 +163,8 @@ int DivisorFor(int width_px, bool is_film) {
 // Tests of one light field.
 class Tester {
  public:
-  Tester(const LightField& light_field, const LfImageStore& store, const DensifyPlan& plan)
+  Tester(const LightField& light_field, const LfImageStore& store, const DensifyPlan& plan,
+         InterruptFlag interrupted)
       : light_field_(light_field),
         plan_(plan),
         divisor_(DivisorFor(light_field.intrinsics.front().width_px, plan.is_film)),
@@ -173,7 +172,8 @@ class Tester {
         images_(light_field, store, divisor_, std::numeric_limits<size_t>::max()),
         planes_(PlanesFor(plan.ShiftPx() * plan.divisor / divisor_)),
         tolerance_(
-            ToleranceFor(plan.range, planes_, plan.shift_per_depth_px * plan.divisor / divisor_)) {}
+            ToleranceFor(plan.range, planes_, plan.shift_per_depth_px * plan.divisor / divisor_)),
+        interrupted_(interrupted) {}
 
   // Tests an LF image that has others around it, or on one side of it that is not left out.
   Result<LeftOut> Test(uint32_t left_out, bool one_side);
@@ -194,6 +194,7 @@ class Tester {
   WorkingImages images_;
   const int planes_;
   const double tolerance_;
+  const InterruptFlag interrupted_;
 };
 
 Result<Tester::Group> Tester::Sweep(std::span<const uint32_t> wanted,
@@ -209,7 +210,7 @@ Result<Tester::Group> Tester::Sweep(std::span<const uint32_t> wanted,
       views.push_back(ViewFrom(*reference, *image));
       others.push_back(std::move(image));
     }
-    group.planes.push_back(SweepDepths(*reference, views, plan_.range, planes_));
+    group.planes.push_back(SweepDepths(*reference, views, plan_.range, planes_, interrupted_));
     group.images.push_back(std::move(reference));
   }
   return group;
@@ -231,7 +232,7 @@ Result<LeftOut> Tester::Test(uint32_t left_out, bool one_side) {
     for (size_t i = 0; i < ids.size(); ++i)
       sources.push_back(
           {group.images[i].get(), &planes[i], static_cast<float>(neighbours[i].weight / sum)});
-    return Synthesize(recorded->camera, sources, plan_.range, tolerance_).light;
+    return Synthesize(recorded->camera, sources, plan_.range, tolerance_, interrupted_).light;
   };
   const Image<float> truth = SmoothTones(recorded->light, curve_);
   LeftOut result{light_field_.image_names[left_out]};
@@ -257,16 +258,14 @@ Result<LeftOut> Tester::Test(uint32_t left_out, bool one_side) {
 
 Result<std::vector<LeftOut>> TestByLeavingOut(const LightField& light_field,
                                               const LfImageStore& store, const DensifyPlan& plan,
-                                              ThreadPool& pool) {
+                                              ThreadPool& pool, const Watch& watch) {
   std::vector<uint32_t> inner, between, beside;
-  const bool is_widened = std::any_of(plan.virtual_cameras.begin(), plan.virtual_cameras.end(),
-                                      [](const VirtualCamera& camera) { return camera.is_beyond; });
   for (const uint32_t id : plan.sources) {
     const Others others = OthersAround(light_field, plan, id, false);
     const bool has_sources = SourcesOf(others, plan).size() >= kLeastSources;
     if (others.Surround() && has_sources) inner.push_back(id);
     if (others.HaveBetween() && has_sources) between.push_back(id);
-    if (is_widened &&
+    if (IsWidened(plan) &&
         SourcesOf(OthersAround(light_field, plan, id, true), plan).size() >= kLeastSources)
       beside.push_back(id);
   }
@@ -274,24 +273,18 @@ Result<std::vector<LeftOut>> TestByLeavingOut(const LightField& light_field,
   const size_t inside_count = std::min(kMostTests, inner.size());
   const size_t count = inside_count + std::min(kMostTests / 2, beside.size());
   std::vector<LeftOut> tests(count);
-  Tester tester(light_field, store, plan);
-  std::mutex mutex;
-  std::optional<Error> error;
+  Tester tester(light_field, store, plan, watch.interrupted);
   // Returns number i of `some` that are spread over all.
   const auto spread = [](const std::vector<uint32_t>& all, size_t i, size_t some) {
     return all[some == 1 ? all.size() / 2 : i * (all.size() - 1) / (some - 1)];
   };
-  pool.ForEach(count, [&](size_t i) {
-    auto result = i < inside_count
-                      ? tester.Test(spread(inner, i, inside_count), false)
-                      : tester.Test(spread(beside, i - inside_count, count - inside_count), true);
-    const std::lock_guard lock(mutex);
-    if (result)
-      tests[i] = *result;
-    else
-      error = result.error();
-  });
-  if (error) return *error;
+  LF_RETURN_IF_ERROR(ForEachWatched(pool, count, watch, [&](size_t i) -> Result<void> {
+    const bool one_side = i >= inside_count;
+    const uint32_t left_out = one_side ? spread(beside, i - inside_count, count - inside_count)
+                                       : spread(inner, i, inside_count);
+    LF_ASSIGN_OR_RETURN(tests[i], tester.Test(left_out, one_side));
+    return {};
+  }));
   return tests;
 }
 

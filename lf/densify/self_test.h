@@ -8,6 +8,7 @@
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
 #include "lf/densify/densify_plan.h"
+#include "lf/densify/watched_loop.h"
 #include "lf/light_field/model/light_field.h"
 #include "lf/storage/load/lf_image_store.h"
 
@@ -42,15 +43,15 @@ inline constexpr double kNearlyRightDb = 36;
 
 // Leaves out up to eight of the sources of virtual LF images in turn, spread over them, and
 // compares each with the virtual LF image that is made of its neighbours; both are reduced to about
-// 200 pixels, smoothed and compared where something is to be seen. The distances between LF cameras are therefore larger than they will be.
-// LF images on the hull of the LF cameras are not tested, because none surround them. If fewer than
-// four are inside it, as in a row, those between two others are tested. Empty if there are none.
-// If virtual LF cameras stand beyond the recorded ones, up to four LF images are also made of those
-// on one side of them.
-// Errors of LoadWorkingImage().
+// 200 pixels, smoothed and compared where something is to be seen. The distances between LF cameras
+// are therefore larger than they will be. LF images on the hull of the LF cameras are not tested,
+// because none surround them. If fewer than four are inside it, as in a row, those between two
+// others are tested. Empty if there are none. If virtual LF cameras stand beyond the recorded ones,
+// up to four LF images are also made of those on one side of them. Errors of LoadWorkingImage();
+// kInterrupted.
 Result<std::vector<LeftOut>> TestByLeavingOut(const LightField& light_field,
                                               const LfImageStore& store, const DensifyPlan& plan,
-                                              ThreadPool& pool);
+                                              ThreadPool& pool, const Watch& watch = {});
 
 // Returns the tests of one kind.
 std::vector<LeftOut> TestsOf(const std::vector<LeftOut>& tests, bool is_beyond);

@@ -54,9 +54,10 @@ class Matcher {
 
   // Adds the costs of paths that come from above (step 1) or from below (step -1), and of those
   // along the row in the same sense.
-  void Sweep(int step) {
+  void Sweep(int step, InterruptFlag interrupted) {
     std::vector<PathRow> last(4, PathRow(width_, costs_.stride)), next = last;
-    for (int i = 0, y = step > 0 ? 0 : height_ - 1; i < height_; ++i, y += step) {
+    for (int i = 0, y = step > 0 ? 0 : height_ - 1; i < height_ && !IsSet(interrupted);
+         ++i, y += step) {
       for (int k = 0, x = step > 0 ? 0 : width_ - 1; k < width_; ++k, x += step) {
         Extend(x, y, step, 0, &next[0], &next[0]);
         Extend(x, y, 0, step, &last[1], &next[1]);
@@ -123,15 +124,15 @@ uint16_t LeadOf(const uint16_t* sums, int best, int planes) {
 
 }  // namespace
 
-ChosenPlanes ChoosePlanes(const MatchingCosts& costs, const Image<uint16_t>& tones,
-                          bool with_lead) {
+ChosenPlanes ChoosePlanes(const MatchingCosts& costs, const Image<uint16_t>& tones, bool with_lead,
+                          InterruptFlag interrupted) {
   Matcher matcher(costs, tones);
-  matcher.Sweep(1);
-  matcher.Sweep(-1);
+  matcher.Sweep(1, interrupted);
+  matcher.Sweep(-1, interrupted);
   const int width = costs.rect.width(), height = costs.rect.height();
   ChosenPlanes chosen{Image<float>(width, height), Image<uint8_t>(width, height),
                       with_lead ? Image<uint16_t>(width, height) : Image<uint16_t>()};
-  for (int y = 0; y < height; ++y)
+  for (int y = 0; y < height && !IsSet(interrupted); ++y)
     for (int x = 0; x < width; ++x) {
       const uint16_t* sums = matcher.SumsAt(x, y);
       const int best = static_cast<int>(std::min_element(sums, sums + costs.planes) - sums);

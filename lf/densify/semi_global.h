@@ -7,6 +7,7 @@
 
 #include "lf/core/image.h"
 #include "lf/densify/matching_costs.h"
+#include "lf/densify/watched_loop.h"
 
 namespace lf {
 
@@ -28,7 +29,9 @@ struct ChosenPlanes {
 inline constexpr int kSmallStep = 24;
 inline constexpr int kLargeStep = 480;
 
-//   tones  of the whole reference image
-ChosenPlanes ChoosePlanes(const MatchingCosts& costs, const Image<uint16_t>& tones, bool with_lead);
+//   tones        of the whole reference image
+//   interrupted  once it is set, the result must not be used
+ChosenPlanes ChoosePlanes(const MatchingCosts& costs, const Image<uint16_t>& tones, bool with_lead,
+                          InterruptFlag interrupted = nullptr);
 
 }  // namespace lf

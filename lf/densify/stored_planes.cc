@@ -24,11 +24,12 @@ DepthPlane CutTo(const DepthPlane& plane, int width, int height) {
   return cut;
 }
 
-DepthPlane AsRecorded(const DepthPlane& plane, const Intrinsics& k, int divisor) {
+DepthPlane AsRecorded(const DepthPlane& plane, const Intrinsics& k, int divisor,
+                      InterruptFlag interrupted) {
   DepthPlane recorded = PaddedTo(plane, PlaneSizeOf(k.width_px, k.height_px, divisor));
   if (!k.has_distortion()) return recorded;
   const DistortionMap map(k.distortion);
-  for (int y = 0; y < recorded.height(); ++y)
+  for (int y = 0; y < recorded.height() && !IsSet(interrupted); ++y)
     for (int x = 0; x < recorded.width(); ++x) {
       const std::optional<Vec3> ideal =
           IdealPosition(k, map, (x + 0.5) * divisor, (y + 0.5) * divisor);

@@ -16,8 +16,10 @@ DepthPlane CutTo(const DepthPlane& plane, int width, int height);
 
 // Returns the plane of an LF image as it was recorded, with its lens distortion. Blocks of divisor
 // x divisor pixels take the depth at the ideal position of their middle; 0 if there is none.
-//   plane  of the working image
-//   k      intrinsics of the LF camera
-DepthPlane AsRecorded(const DepthPlane& plane, const Intrinsics& k, int divisor);
+//   plane        of the working image
+//   k            intrinsics of the LF camera
+//   interrupted  once it is set, the result must not be used
+DepthPlane AsRecorded(const DepthPlane& plane, const Intrinsics& k, int divisor,
+                      InterruptFlag interrupted = nullptr);
 
 }  // namespace lf

@@ -40,12 +40,12 @@ class SourceView {
   float weight() const { return source_.weight; }
 
   // Writes the nearest depth that the source shows at each pixel of the virtual image.
-  void Project(Image<float>* candidates) const {
+  void Project(Image<float>* candidates, InterruptFlag interrupted) const {
     constexpr float kReach = 0.75f;
     const DepthPlane& plane = *source_.plane;
     const int width = candidates->width(), height = candidates->height();
     std::fill(candidates->pixels().begin(), candidates->pixels().end(), kNoDepth);
-    for (int y = 0; y < plane.height(); ++y)
+    for (int y = 0; y < plane.height() && !IsSet(interrupted); ++y)
       for (int x = 0; x < plane.width(); ++x) {
         if (source_.image->light.at(x, y, kColours) == 0 ||
             IsTransparent(&source_.image->tones.at(x, y)))
@@ -135,17 +135,18 @@ struct Candidate {
 class Synthesizer {
  public:
   Synthesizer(const PinholeCamera& camera, std::span<const Source> sources,
-              const InverseDepths& range, double tolerance)
+              const InverseDepths& range, double tolerance, InterruptFlag interrupted)
       : width_(camera.intrinsics.width_px),
         height_(camera.intrinsics.height_px),
         tolerance_(static_cast<float>(tolerance)),
         per_tolerance_(static_cast<float>(1 / tolerance)),
         farthest_(static_cast<float>(range.least)),
-        nothing_{sources[0].image->black, sources[0].image->black, sources[0].image->black, 1} {
+        nothing_{sources[0].image->black, sources[0].image->black, sources[0].image->black, 1},
+        interrupted_(interrupted) {
     for (const Source& source : sources) {
       views_.emplace_back(camera, source, range);
       candidates_.emplace_back(width_, height_);
-      views_.back().Project(&candidates_.back());
+      views_.back().Project(&candidates_.back(), interrupted_);
     }
     Carve();
     FillHoles();
@@ -157,7 +158,7 @@ class Synthesizer {
                        Image<uint8_t>(width_, height_), 0};
     size_t weak = 0, transparent = 0;
     std::array<Candidate, kMostSources> elected;
-    for (int y = 0; y < height_; ++y)
+    for (int y = 0; y < height_ && !IsSet(interrupted_); ++y)
       for (int x = 0; x < width_; ++x) {
         const size_t count = Vote(x, y, &elected);
         if (count == 0) {
@@ -210,7 +211,7 @@ class Synthesizer {
         }
         if (depth == kNoDepth) open.push_back({x, y});
       }
-    for (int reach = 1; reach < kReach && !open.empty(); ++reach) {
+    for (int reach = 1; reach < kReach && !open.empty() && !IsSet(interrupted_); ++reach) {
       std::vector<std::array<int, 2>> still_open;
       std::vector<std::pair<std::array<int, 2>, float>> filled;
       for (const auto& [x, y] : open) {
@@ -349,6 +350,7 @@ class Synthesizer {
   const int width_, height_;
   const float tolerance_, per_tolerance_, farthest_;
   const std::array<uint16_t, kLanes> nothing_;  // a transparent pixel
+  const InterruptFlag interrupted_;
   std::vector<SourceView> views_;
   std::vector<Image<float>> candidates_;
   Image<float> holes_;  // for pixels without a candidate: a depth from around them
@@ -357,9 +359,9 @@ class Synthesizer {
 }  // namespace
 
 VirtualImage Synthesize(const PinholeCamera& camera, std::span<const Source> sources,
-                        const InverseDepths& range, double tolerance) {
+                        const InverseDepths& range, double tolerance, InterruptFlag interrupted) {
   LF_CHECK(!sources.empty() && sources.size() <= kMostSources && tolerance > 0);
-  return Synthesizer(camera, sources, range, tolerance).Run();
+  return Synthesizer(camera, sources, range, tolerance, interrupted).Run();
 }
 
 }  // namespace lf

@@ -9,6 +9,7 @@
 #include "lf/core/image.h"
 #include "lf/densify/depth_plane.h"
 #include "lf/densify/inverse_depths.h"
+#include "lf/densify/watched_loop.h"
 #include "lf/densify/working_image.h"
 
 namespace lf {
@@ -47,11 +48,13 @@ struct VirtualImage {
 // can be there. So is the depth of a pixel without candidate, and the pixel is then transparent. A
 // source that is partly transparent at a place shows that nothing is there with the rest of its
 // weight, whatever its depth.
-//   camera     without distortion
-//   sources    1 to kMostSources
-//   tolerance  of inverse depths that count as equal
+//   camera       without distortion
+//   sources      1 to kMostSources
+//   tolerance    of inverse depths that count as equal
+//   interrupted  once it is set, the result must not be used
 inline constexpr size_t kMostSources = 8;
 VirtualImage Synthesize(const PinholeCamera& camera, std::span<const Source> sources,
-                        const InverseDepths& range, double tolerance);
+                        const InverseDepths& range, double tolerance,
+                        InterruptFlag interrupted = nullptr);
 
 }  // namespace lf

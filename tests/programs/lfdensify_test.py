@@ -78,7 +78,8 @@ class DensifyTest(ProgramTestCase):
         return path
 
     def densify(self, *options, code=0, store=None, most=60):
-        return self.succeeds(DENSIFY, self.field, "-o", store or self.store, "--most", most, *options, code=code)
+        return self.succeeds(DENSIFY, self.field, "-o", store or self.store, "--most", most, "--cache", "none",
+                             *options, code=code)
 
     def render(self, field, path, *options):
         frames = self.folder / "frames"
@@ -165,7 +166,7 @@ class DensifyTest(ProgramTestCase):
         again = self.folder / "again.lfs"
         for stop in signal.SIGINT, signal.SIGKILL, signal.SIGTERM:
             process = subprocess.Popen([DENSIFY, self.field, "-o", again, "--most", "60", "--threads", "1",
-                                        "--resume"], stderr=subprocess.DEVNULL)
+                                        "--cache", "none", "--resume"], stderr=subprocess.DEVNULL)
             size = unfinished.stat().st_size if unfinished.exists() else 0
             wait_until(lambda: unfinished.exists() and unfinished.stat().st_size > size + 20000, process)
             process.send_signal(stop)

@@ -25,4 +25,16 @@ void AddStoreRestart(OptionGroup& running, bool& resume, bool& overwrite) {
       ->excludes(resumes);
 }
 
+CLI::Option* AddDepthCache(OptionGroup& group, std::string& cache) {
+  return group
+      .Add("--cache DIR", cache,
+           "Folder that keeps depths for other calls (beside LIGHTFIELD)\n"
+           "Depths of recorded LF images depend neither on PATH nor on the number of virtual LF "
+           "images, and take most of the time. The default is a folder beside the light field, "
+           "such as capture.depths; depths are not kept if this place cannot be written or belongs "
+           "to another user. none: depths are not kept. Where images, poses or options differ, "
+           "depths are searched again. The folder may be removed at any time.")
+      ->check(NotEmpty());
+}
+
 }  // namespace lf

@@ -14,4 +14,7 @@ void AddStoreOutput(OptionGroup& output, std::string& store);
 // Adds --resume and --overwrite, of which only one may be given.
 void AddStoreRestart(OptionGroup& running, bool& resume, bool& overwrite);
 
+// Adds --cache, whose value DepthCacheFolder() takes.
+CLI::Option* AddDepthCache(OptionGroup& group, std::string& cache);
+
 }  // namespace lf
