@@ -59,6 +59,11 @@ void Tell(const DensifyReport& report, const DensifyOptions& options) {
   LogInfo("{}: {} recorded and {} virtual LF images, copies at most {:.2g} px apart{}",
           options.store.string(), report.recorded_count, report.virtual_count, report.spacing_px,
           report.was_there ? "; existed already" : "");
+  if (report.filled_diameter_w)
+    LogWarning(
+        "not all lenses are filled with virtual LF images: the LF cameras are near enough to fill "
+        "one of a diameter of {:.4g} world units",
+        *report.filled_diameter_w);
 }
 
 }  // namespace

@@ -78,13 +78,13 @@ void TellRebinning(const RenderReport& report) {
                                   : "there was no room for all rays");
 }
 
-// Reports how much of the pictures rests on virtual LF images, and how much of it is not trusted.
+// Reports how much of the pictures rests on virtual LF images, and how much of it is doubtful.
 void TellVirtualLight(const RenderReport& report) {
   const std::optional<VirtualLight> light = report.MeanVirtualLight();
   if (!light) return;
   LogInfo(
-      "virtual light: {:.1f} % of the light of the frames rests on virtual LF images; it is not "
-      "trusted in {:.1f} % of the elements, which are out of focus",
+      "virtual light: {:.1f} % of the light of the frames rests on virtual LF images; it is "
+      "doubtful in {:.1f} % of the elements",
       100 * light->densified_share, 100 * light->doubtful_share);
 }
 

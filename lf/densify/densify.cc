@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <mutex>
 #include <numeric>
@@ -416,6 +417,7 @@ Result<DensifyReport> Densifier::Run() {
   report_.shift_px = plan_.ShiftPx();
   report_.distance_w = plan_.distance_w;
   report_.spacing_px = plan_.spacing_px;
+  if (std::isfinite(plan_.filled_radius_w)) report_.filled_diameter_w = 2 * plan_.filled_radius_w;
   if (!report_.dense.empty()) return std::move(report_);
   LogDebug("{}: {}", options_.store.string(), SettingsInWords(plan_, options_.choices));
   LF_RETURN_IF_ERROR(CheckPoses());

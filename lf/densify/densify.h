@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -74,6 +75,9 @@ struct DensifyReport {
   double shift_px = 0;    // DensifyPlan::ShiftPx()
   double distance_w = 0;  // distance between neighbouring virtual LF cameras
   double spacing_px = 0;  // DensifyPlan::spacing_px
+  // Diameter of the largest lens of the film that would be filled with virtual LF images all around
+  // its middle; unset: all lenses are filled, or there is no film.
+  std::optional<double> filled_diameter_w;
   std::vector<LeftOut> tests;
   // Share of the pixels on whose depth two neighbours agree, without transparent pixels.
   double agreeing_share = 0;

@@ -30,6 +30,12 @@ std::string DensifyText(const DensifyReport& report, const DensifyOptions& optio
       options.store.string(), report.recorded_count, report.virtual_count,
       DepthText(report.range.greatest), DepthText(report.range.least), report.planes,
       report.shift_px, report.distance_w, report.spacing_px);
+  if (report.filled_diameter_w)
+    text += fmt::format(
+        "lens      not all lenses are filled: LF cameras are near enough to fill one of a diameter "
+        "of "
+        "{:.4g}\n",
+        *report.filled_diameter_w);
   for (const DensifyReport::Skipped& skipped : report.skipped)
     text += fmt::format("skipped   {}: {}\n", skipped.name, Spelled(skipped.reason));
   if (report.was_there) return text + "existed already: nothing was written\n" + next;
@@ -85,6 +91,9 @@ std::string DensifyJson(const DensifyReport& report, const DensifyOptions& optio
       {"shift_px", report.shift_px},
       {"camera_distance_w", report.distance_w},
       {"spacing_px", report.spacing_px},
+      {"filled_diameter_w", report.filled_diameter_w
+                                ? nlohmann::ordered_json(*report.filled_diameter_w)
+                                : nlohmann::ordered_json(nullptr)},
       {"agreeing_share", report.agreeing_share},
       {"weak_share", report.weak_share},
       {"skipped", skipped},

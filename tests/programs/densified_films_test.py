@@ -140,6 +140,9 @@ keyframes:
         pose = self.poses()[4]
         path = self.write_path("path.yaml", [pose], 0.04, 0.5)
         store, report = self.densify(path, "--most", 80)
+        self.assertIsNone(report["filled_diameter_w"])
+        wide = self.write_path("wide.yaml", [pose], 0.1, 0.5)
+        self.assertAlmostEqual(self.densify(wide, "--most", 80)[1]["filled_diameter_w"], 0.04, delta=0.012)
         self.assertGreater(sum(not test["beyond"] for test in report["tests"]), 2)
         self.assertGreater(sum(test["beyond"] for test in report["tests"]), 1)
         truth = self.truth(path)

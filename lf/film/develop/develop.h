@@ -74,7 +74,10 @@ inline constexpr double kGuardTo = 0.2;
 // It shows the rays of all LF images only where their trust is above kTrustFrom, without loss from
 // kTrustTo on.
 inline constexpr double kTrustFrom = 0.3;
-inline constexpr double kTrustTo = 0.6;
+inline constexpr double kTrustTo = 0.45;
+// An element is doubtful if its trust is below kDoubtfulTrust: more than a fifth of such elements
+// are visibly wrong (render/collect/opacity_and_trust.h).
+inline constexpr double kDoubtfulTrust = 0.8;
 
 // Averages the rays of every element and channel, and mixes (1 - share) of the average with share
 // of the completion; the completion is taken alone if no ray was collected. An element without

@@ -24,7 +24,7 @@ GuardShare GuardShareOf(const SensorPlate& plate, const DevelopOptions& options,
   const ElementSum trust = plate.At(x, y, plate.trust_channel());
   if (trust.count == 0) return {defocus.count == 0 ? 1.0 : 0.0, 1};
   const double trusted = std::clamp(MeanShareOf(trust, options), 0.0, 1.0);
-  const bool is_doubtful = trusted < (kTrustFrom + kTrustTo) / 2;
+  const bool is_doubtful = trusted < kDoubtfulTrust;
   if (defocus.count == 0) return {1, trusted, is_doubtful};
   const double blurred = SmoothStep(MeanShareOf(defocus, options), kGuardFrom, kGuardTo);
   if (blurred == 0) return {};

@@ -11,8 +11,8 @@ namespace lf {
 struct GuardShare {
   double densified = 0;  // DevelopedFrame::densified
   double trust = 1;      // DevelopedFrame::trust
-  // True if the element is rather out of focus than in focus, and the rays of all LF images are
-  // rather not trusted than trusted.
+  // True if the element is rather out of focus than in focus, and its trust is below
+  // kDoubtfulTrust.
   bool is_doubtful = false;
 };
 

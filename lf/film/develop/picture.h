@@ -39,9 +39,8 @@ struct DevelopedFrame {
   // focus and therefore shows recorded light, and where no ray was collected; empty unless the
   // plate is guarded.
   Image<float> trust = {};
-  // Number of elements that virtual light would blur, but that is not trusted: m > 1/2, but the
-  // trust is below the middle of kTrustFrom and kTrustTo (develop.h). They show recorded light if
-  // there is some.
+  // Number of elements that virtual light blurs (m > 1/2), but whose trust is below kDoubtfulTrust
+  // (develop.h).
   uint64_t doubtful_count = 0;
   // [height][width] depth, along the optical axis, at which each element is in focus. Develop()
   // and RenderFrame() leave it empty; it is filled when a file with PictureOptions::has_focus_depth

@@ -15,6 +15,7 @@
 #include "lf/camera/render_camera.h"
 #include "lf/camera/testing_scenes.h"
 #include "lf/render/collect/collect.h"
+#include "lf/render/collect/opacity_and_trust.h"
 #include "lf/render/collect/test_noise_field.h"
 #include "lf/selection/image_index.h"
 
@@ -180,7 +181,7 @@ class ShownStore : public DepthStore {
     for (int y = 0; y < rect.height(); ++y)
       for (int x = 0; x < rect.width(); ++x) {
         if (pixels->IsMasked(x, y)) continue;
-        const double trust = pixels->trust.empty() ? 1 : pixels->trust.at(x, y) / 255.0;
+        const double trust = pixels->trust.empty() ? 1 : ShownTrust(pixels->trust.at(x, y));
         const auto value = static_cast<uint16_t>(std::lround(16384 + trust * 32768));
         for (int c = 0; c < 3; ++c)
           pixels->radiance.at(x, y, c) = shows_trust_ ? value : pixels->opacity.at(x, y, c);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -12,18 +13,24 @@
 namespace lf {
 namespace {
 
-constexpr uint32_t kRange = LfPixels::kOpaque - LfPixels::kTransparent;
+constexpr double kRange = LfPixels::kOpaque - LfPixels::kTransparent;
 
 // Values of opacities by trust, rounded to nearest.
 std::array<uint16_t, LfPixels::kTrusted + 1> TrustValues() {
   std::array<uint16_t, LfPixels::kTrusted + 1> values;
   for (uint32_t trust = 0; trust < values.size(); ++trust)
     values[trust] = static_cast<uint16_t>(
-        LfPixels::kTransparent + (trust * kRange + LfPixels::kTrusted / 2) / LfPixels::kTrusted);
+        LfPixels::kTransparent + std::lround(kRange * ShownTrust(static_cast<uint8_t>(trust))));
   return values;
 }
 
 }  // namespace
+
+double ShownTrust(uint8_t trust) {
+  constexpr double kWrongGuesses = 0.75;  // share of pixels without any trust that are wrong
+  const double lacking = 1 - static_cast<double>(trust) / LfPixels::kTrusted;
+  return 1 - kWrongGuesses * lacking * lacking * lacking;
+}
 
 LfPixels TakeOpacityAndTrust(LfPixels* pixels) {
   LF_CHECK(pixels->bayer == BayerPattern::kNone);

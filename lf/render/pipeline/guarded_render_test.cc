@@ -198,9 +198,9 @@ TEST_F(GuardedRenderTest, FarOutOfFocusOrAtUnknownDepthsItIsThatOfAll) {
 // The trust, E, R and V of the plate give the picture by the formula of doc/densify.md.
 TEST_F(GuardedRenderTest, VirtualLightIsShownAsFarAsItIsTrusted) {
   UseAlpha();
-  const auto guarded =
-      Rendered(Densified([](uint32_t, size_t) { return uint16_t{20000}; },
-                         [](uint32_t, size_t k) { return static_cast<uint8_t>(k % 64 * 3); }));
+  const auto guarded = Rendered(
+      Densified([](uint32_t, size_t) { return uint16_t{20000}; },
+                [](uint32_t, size_t k) { return static_cast<uint8_t>(k % 64 < 40 ? 0 : 60); }));
   const SensorPlate& plate = guarded->plate(0);
   const RenderedFrame rendered = guarded->Develop(0);
   const DevelopedFrame& picture = rendered.picture;
@@ -215,11 +215,11 @@ TEST_F(GuardedRenderTest, VirtualLightIsShownAsFarAsItIsTrusted) {
       ++seen;
       const double trust = mean(x, y, 9);
       ASSERT_NEAR(picture.trust.at(x, y), trust, 1e-6);
-      const double s = std::clamp((trust - 0.3) / 0.3, 0.0, 1.0);
+      const double s = std::clamp((trust - 0.3) / 0.15, 0.0, 1.0);
       const bool is_recorded = plate.At(x, y, 4).count > 0;
       const double t = is_recorded ? s * s * (3 - 2 * s) : 1;
       densified += t;
-      doubtful += trust < 0.45 ? 1 : 0;
+      doubtful += trust < 0.8 ? 1 : 0;
       ASSERT_NEAR(picture.densified.at(x, y), t, 1e-5);
       recorded += t < 0.1 ? 1 : 0;
       mixed += t > 0.4 && t < 0.6 ? 1 : 0;
@@ -227,8 +227,10 @@ TEST_F(GuardedRenderTest, VirtualLightIsShownAsFarAsItIsTrusted) {
       ASSERT_NEAR(picture.opacity.at(x, y), std::clamp(opacity + t * (all - opacity), 0.0, 1.0),
                   1e-5);
     }
-  EXPECT_GT(recorded, 50u);
-  EXPECT_GT(mixed, 50u);
+  // Few, because recorded rays, which are trusted, have a part in most elements.
+  EXPECT_GT(recorded, 0u);
+  EXPECT_GT(mixed, 5u);
+  EXPECT_GT(doubtful, 50u);
   EXPECT_GT(seen, recorded + mixed + 100);
   const auto count = static_cast<double>(seen);
   ASSERT_TRUE(rendered.report.virtual_light);

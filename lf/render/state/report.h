@@ -43,7 +43,7 @@ struct FrameNoise {
 struct VirtualLight {
   // Mean of DevelopedFrame::densified over the elements with rays.
   double densified_share = 0;
-  // Share of these elements whose virtual light is not trusted (DevelopedFrame::doubtful_count).
+  // Share of these elements whose virtual light is doubtful (DevelopedFrame::doubtful_count).
   double doubtful_share = 0;
   friend bool operator==(const VirtualLight&, const VirtualLight&) = default;
 };
