@@ -94,6 +94,17 @@ def middle_path(field, path, size, elements_per_focal_length, diameter, focus):
     return path
 
 
+def camera_path(field, path, number, diameter, focus):
+    """Writes the path of a frame that stands at an LF camera, with its picture."""
+    pose = np.array(field["frames"][number]["transform_matrix"])
+    fov_deg = float(2 * np.degrees(np.arctan(field["w"] / 2 / field["fl_x"])))
+    path.write_text(quality.path_yaml({
+        "w": field["w"], "h": field["h"], "fov_x_deg": fov_deg, "transform_matrix": pose.tolist(),
+        "aperture_diameter_m": diameter, "blades": 0, "blade_rotation_deg": 0.0, "focus_distance_m": focus,
+        "focus_plane": {"normal": (-pose[:3, 2]).tolist()}}))
+    return path
+
+
 def with_pictures(frames, folder, change):
     """Returns frames whose pictures are those of `change(number, 8-bit picture)`."""
     folder.mkdir()

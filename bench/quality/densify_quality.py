@@ -11,6 +11,7 @@ SHARED   folder with groundtruth/ (as for quality.py), data/blender-shop and dat
 GROUP    planar    ground truth: every 2nd, 4th and 8th column and row of `planar`, and some at random
          band      ground truth: every 2nd, 4th and 8th column and 2nd row of `band`
          scenes    scenes of lfsynth against true pictures
+         around    scenes of lfsynth, photographed from all around, against true pictures
          shop      blender-shop against the frames of all 729 LF images
          cards     stanford-cards against the frames of all 81 LF images
          spoiled   ground truth, with noise, wrong exposures, poses and depths, and an object that moves
@@ -145,6 +146,30 @@ def scenes(bench):
     return table
 
 
+def around(bench):
+    """Photographs all around, and one frame at one of them; virtual LF cameras fill its lens alone."""
+    focus, diameter = 0.85, 0.04
+    table = lens_weights.Table("scene", "photographs", "degrees apart", "virtual", "*R*", "*V*", "guarded",
+                               "left out, dB", "better than a mean by")
+    for scene, count in (("still-life", 320), ("still-life", 142), ("still-life", 92), ("lights", 142)):
+        calibration = bench.folder / f"{scene}_{count}" / "transforms.json"
+        synth = [bench.programs / "lfsynth", scene, "-q", "--capture", "hemisphere", "--count", count, "-o"]
+        results.call([*synth, calibration.parent, "--size", "320x240", "--format", "png"])
+        field = quality.read_field(calibration)
+        path = captures.camera_path(field, bench.folder / "path.yaml", round(0.3 * count), diameter, focus)
+        out = bench.folder / f"truth_{scene}_{count}"
+        results.call([*synth, out, "--calibration-only", "--truth", path, "--truth-samples", 400])
+        truth = lens_weights.linear_exr(next(out.rglob("frame_0001.exr")))
+        store, report = bench.densify(calibration, path, *FEWER, "--cache", "none")
+        decibels_of = [decibels(bench.renderer, truth, source, path, words)
+                       for source, words in ((calibration, ""), (store, NO_GUARD), (store, ""))]
+        tests = [test for test in report["tests"] if not test["beyond"]]
+        table.add(scene, count, f"{np.degrees(np.sqrt(2 * np.pi / count)):.0f}", report["virtual"],
+                  *map(text, decibels_of), f"{np.median([test['virtual_psnr_db'] for test in tests]):.1f}",
+                  f"{np.median([test['virtual_psnr_db'] - test['mean_psnr_db'] for test in tests]):.1f}")
+    return table
+
+
 def against_all(bench, field, paths, parts):
     """Returns the table of parts of a light field, against the frames of all its LF images. LF images are reduced to
     half their size first: LF pixels are then about as large as elements, as in the ground truth.
@@ -254,7 +279,7 @@ def publish(arguments, group):
     table.publish(arguments, f"densify_quality.py {group}", record)
 
 
-GROUPS = {"planar": planar, "band": band, "scenes": scenes, "shop": shop, "cards": cards, "spoiled": spoiled,
+GROUPS = {"planar": planar, "band": band, "scenes": scenes, "around": around, "shop": shop, "cards": cards, "spoiled": spoiled,
           "flicker": flicker}
 
 

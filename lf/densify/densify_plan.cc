@@ -33,8 +33,9 @@ constexpr double kOutside = 0.5;  // of the median distance between LF cameras
 
 // Limits of the shift between compared LF images, as a share of their longer side, and of the angle
 // between their rays to the middle of the scene.
-constexpr double kMuchShift = 0.25, kMostShift = 0.5;
-constexpr double kLargeAngle_deg = 8, kMostAngle_deg = 15;
+// Films, whose lenses lie near LF cameras, allow more.
+constexpr double kMuchShift = 0.25, kMostShift = 0.5, kMostShiftOfFilm = 0.8;
+constexpr double kLargeAngle_deg = 8, kMostAngle_deg = 15, kMostAngleOfFilm_deg = 20;
 
 // Returns the median shift between working images and those that they are compared with, per unit
 // of inverse depth; only the `most` nearest of these count.
@@ -77,11 +78,13 @@ Result<void> CheckReach(const LightField& light_field, const DensifyPlan& plan, 
       "between neighbouring LF images, near points of the scene shift by {:.0f} % of the longer "
       "side against far ones, and rays to the middle of the scene differ by {:.1f} degrees",
       100 * share, angle_deg);
-  if ((share > kMostShift || angle_deg > kMostAngle_deg) && !force)
+  const double most_share = plan.is_film ? kMostShiftOfFilm : kMostShift;
+  const double most_deg = plan.is_film ? kMostAngleOfFilm_deg : kMostAngle_deg;
+  if ((share > most_share || angle_deg > most_deg) && !force)
     return InputError(fmt::format(
         "{}: expected at most {:.0f} % and {:.0f} degrees; take photographs at smaller distances, "
         "or try {{force}}",
-        figures, 100 * kMostShift, kMostAngle_deg));
+        figures, 100 * most_share, most_deg));
   if (share > kMuchShift || angle_deg > kLargeAngle_deg)
     LogWarning("{}: what virtual LF images show beside outlines will often be wrong", figures);
   return {};
