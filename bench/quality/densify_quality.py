@@ -53,8 +53,8 @@ class Bench:
     def densify(self, calibration, *options):
         """Returns (store, report), or (None, the refusal)."""
         store = self.folder / f"{calibration.parent.name}.lfs"
-        words = [self.programs / "lfdensify", calibration, "-o", store, "--overwrite", "--json", "-q", "--cache", "none",
-                 "--progress", "none", *options]
+        words = [self.programs / "lfdensify", calibration, "-o", store, "--overwrite", "--json", "-q", "--cache",
+                 "none", "--progress", "none", *options]
         done = subprocess.run([str(word) for word in words], capture_output=True, text=True)
         if done.returncode in (0, 6):
             return store, json.loads(done.stdout)
@@ -160,7 +160,7 @@ def around(bench):
         out = bench.folder / f"truth_{scene}_{count}"
         results.call([*synth, out, "--calibration-only", "--truth", path, "--truth-samples", 400])
         truth = lens_weights.linear_exr(next(out.rglob("frame_0001.exr")))
-        store, report = bench.densify(calibration, path, *FEWER, "--cache", "none")
+        store, report = bench.densify(calibration, path, *FEWER)
         decibels_of = [decibels(bench.renderer, truth, source, path, words)
                        for source, words in ((calibration, ""), (store, NO_GUARD), (store, ""))]
         tests = [test for test in report["tests"] if not test["beyond"]]
@@ -279,8 +279,8 @@ def publish(arguments, group):
     table.publish(arguments, f"densify_quality.py {group}", record)
 
 
-GROUPS = {"planar": planar, "band": band, "scenes": scenes, "around": around, "shop": shop, "cards": cards, "spoiled": spoiled,
-          "flicker": flicker}
+GROUPS = {"planar": planar, "band": band, "scenes": scenes, "around": around, "shop": shop,
+          "cards": cards, "spoiled": spoiled, "flicker": flicker}
 
 
 def main():

@@ -287,7 +287,7 @@ class Synthesizer {
     if (!(sum > 0)) return 0;
     for (float& lane : colour) lane /= sum;
     RoundPixel(colour, nothing_[0], pixel);
-    // What is transparent is known.
+    // Transparent parts are known.
     const float opacity = OpacityOfLane(colour[kColours]);
     return static_cast<uint8_t>(opacity * TrustOf(elected[0].votes, spread) +
                                 (1 - opacity) * LfPixels::kTrusted + 0.5f);
