@@ -154,7 +154,7 @@ def around(bench):
     for scene, count in (("still-life", 320), ("still-life", 142), ("still-life", 92), ("lights", 142)):
         calibration = bench.folder / f"{scene}_{count}" / "transforms.json"
         synth = [bench.programs / "lfsynth", scene, "-q", "--capture", "hemisphere", "--count", count, "-o"]
-        results.call([*synth, calibration.parent, "--size", "320x240", "--format", "png"])
+        results.call([*synth, calibration.parent, "--size", "320x240"])
         field = quality.read_field(calibration)
         path = captures.camera_path(field, bench.folder / "path.yaml", round(0.3 * count), diameter, focus)
         out = bench.folder / f"truth_{scene}_{count}"

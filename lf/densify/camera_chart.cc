@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include "lf/core/median.h"
 #include "lf/densify/natural_neighbours.h"
@@ -61,6 +62,20 @@ std::vector<uint32_t> NearestAllAround(const CameraChart& chart, uint32_t id, do
       chosen.push_back(chart.ids[at]);
   }
   return chosen;
+}
+
+// Returns the two LF cameras that are nearest to one, but not at its position.
+std::vector<uint32_t> NearestTwo(const LightField& light_field, uint32_t id) {
+  const Vec3 centre = light_field.Camera(LfImageId{id}).CentreWorld();
+  std::vector<std::pair<double, uint32_t>> order;
+  for (uint32_t other = 0; other < light_field.size(); ++other) {
+    const double distance = (light_field.Camera(LfImageId{other}).CentreWorld() - centre).norm();
+    if (distance > 0) order.emplace_back(distance, other);
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<uint32_t> nearest;
+  for (size_t k = 0; k < std::min<size_t>(2, order.size()); ++k) nearest.push_back(order[k].second);
+  return nearest;
 }
 
 }  // namespace
@@ -123,6 +138,7 @@ std::vector<std::vector<uint32_t>> CompareWith(const LightField& light_field,
                             ? std::tan(RadiansFromDegrees(kMostTurned_deg)) / inverse_distance
                             : std::numeric_limits<double>::infinity();
     result.push_back(NearestAllAround(chart_of(id), id, median, most));
+    if (result.back().empty()) result.back() = NearestTwo(light_field, id);
   }
   return result;
 }

@@ -37,8 +37,9 @@ double InverseDistanceOf(const PinholeCamera& camera, const std::optional<Vec3>&
 
 // Returns, for each LF camera, those that its LF image is compared with: the nearest one in each of
 // eight directions of its chart, up to four times as far as usual, or at least the nearest four.
-// None but the nearest two see the subject from a direction more than 22 degrees away. There are
-// none if the chart shows no other LF camera.
+// None but the nearest two see the subject from a direction more than 22 degrees away. If the
+// chart shows no other LF camera, they are the two nearest ones. There are none if all LF cameras
+// are at one position.
 std::vector<std::vector<uint32_t>> CompareWith(const LightField& light_field,
                                                const std::optional<Vec3>& subject);
 

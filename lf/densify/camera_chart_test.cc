@@ -76,6 +76,12 @@ TEST(CompareWith, LfCamerasAtOnePlaceHaveNoNeighbours) {
   for (const std::vector<uint32_t>& chosen : CompareWith(field, {})) EXPECT_TRUE(chosen.empty());
 }
 
+TEST(CompareWith, WithoutOthersOnItsSideAnLfCameraHasTheNearestTwo) {
+  const LightField ring = Ring(4);
+  const std::vector<std::vector<uint32_t>> chosen = CompareWith(ring, AxesMeetingPoint(ring));
+  EXPECT_EQ(chosen[0], (std::vector<uint32_t>{1, 3}));
+}
+
 TEST(ChartAround, ShowsTheSideThatLooksAtThePoint) {
   const LightField ring = Ring(35);
   const PinholeCamera camera = ring.Camera(LfImageId{0});

@@ -291,6 +291,12 @@ Result<DensifyPlan> PlanDensify(const LightField& light_field, const LfImageStor
   plan.divisor = choices.divisor;
   plan.subject = AxesMeetingPoint(light_field);
   plan.compare_with = CompareWith(light_field, plan.subject);
+  if (std::all_of(plan.compare_with.begin(), plan.compare_with.end(),
+                  [](const auto& others) { return others.empty(); }))
+    return InputError(fmt::format(
+        "all {} LF cameras are at one place: virtual LF images can only be made between LF cameras "
+        "at several places",
+        light_field.size()));
   std::optional<FilmLenses> lenses;
   if (choices.frames.empty()) {
     plan.serving.resize(light_field.size());
