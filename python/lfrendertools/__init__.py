@@ -24,6 +24,7 @@ from .camera import Camera
 from .camera_path import Path
 from .captures import compress, forecast, report, synth, write_packages
 from .comparisons import Comparison, compare
+from .densifying import densify
 from .depth_maps import DepthMap, depth_map
 from .display import display_values
 from .epipolar import EpipolarPicture, epi
@@ -43,8 +44,8 @@ __version__: str = _core.version
 __all__ = ["BelowRequired", "BlackFrameWarning", "Camera", "Comparison", "DepthMap", "EpipolarPicture", "Error",
            "FocusStack", "Frame", "Grid", "InputError", "InterruptedRender", "Intrinsics", "LightField",
            "MissingImagesWarning", "OutputError", "Path", "Plate", "Renderer", "Selection", "UncertainFocusWarning",
-           "UsageError", "Views", "compare", "compress", "depth_map", "display_values", "epi", "film", "focus_stack",
-           "forecast", "open", "read_image", "render", "report", "select", "synth", "through", "views",
+           "UsageError", "Views", "compare", "compress", "densify", "depth_map", "display_values", "epi", "film",
+           "focus_stack", "forecast", "open", "read_image", "render", "report", "select", "synth", "through", "views",
            "write_packages"]
 
 logging.getLogger("lfrendertools").addHandler(logging.NullHandler())

@@ -264,6 +264,22 @@ class StoreWords:
 
 def compress(arg0: LightField, arg1: _Bytes, arg2: CodecWords, arg3: StoreWords, arg4: int, arg5: _Tell) -> str: ...
 
+class DensifyWords:
+    output: _Bytes
+    memory: str
+    cache: _Bytes
+    depths: Optional[Tuple[float, float]]
+    spacing: float
+    most: int
+    divisor: int
+    force: bool
+    resume: bool
+    overwrite: bool
+    strict: bool
+    def __init__(self) -> None: ...
+
+def densify(arg0: LightField, arg1: _Bytes, arg2: List[RenderCamera], arg3: DensifyWords, arg4: int, arg5: _Tell) -> str: ...
+
 class SyntheticFieldOptions:
     scene: str
     output: _Bytes

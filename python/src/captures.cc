@@ -21,6 +21,9 @@
 #include "lf/core/quantities.h"
 #include "lf/core/shell_word.h"
 #include "lf/core/version.h"
+#include "lf/densify/densify.h"
+#include "lf/densify/densify_report.h"
+#include "lf/densify/depth_cache.h"
 #include "lf/distribute/compress/codec_words.h"
 #include "lf/distribute/compress/compress_report.h"
 #include "lf/distribute/preprocess/forecast_report.h"
@@ -175,6 +178,51 @@ std::string CompressField(const OpenedField& field, const std::string& name,
       &work.signals);
 }
 
+// The options of lfdensify, with its names.
+struct DensifyWords {
+  std::string output, memory = "2G", cache;
+  std::optional<std::pair<double, double>> depths;  // near, far
+  double spacing = 1.5;
+  size_t most = 2000;
+  int divisor = 1;
+  bool force = false, resume = false, overwrite = false, strict = false;
+};
+
+// Puts virtual LF images into the lenses of frames, or between all LF cameras if there are none.
+// Returns the report of lfdensify as JSON.
+std::string DensifyField(const OpenedField& field, const std::string& name,
+                         const std::vector<RenderCamera>& frames, const DensifyWords& words,
+                         int threads, const Tell& tell) {
+  ThreadPool& pool = PoolOf(threads);
+  ToldWork work(tell);
+  DensifyOptions options;
+  options.store = words.output;
+  options.choices.frames = frames;
+  options.choices.spacing_px = words.spacing;
+  options.choices.most_virtual = words.most;
+  options.choices.divisor = words.divisor;
+  options.choices.force = words.force;
+  if (words.depths) options.choices.depths = DepthRange{words.depths->first, words.depths->second};
+  options.memory_bytes = Take(ParseByteSize(words.memory, "memory"));
+  options.cache = Take(DepthCacheFolder(words.cache, field.light_field));
+  options.resume = words.resume;
+  options.overwrite = words.overwrite;
+  options.strict = words.strict;
+  options.source_name = name;
+  options.version = Version();
+  options.interrupted = &work.signals.interrupted;
+  return CallWithoutGil(
+      [&] {
+        const DensifyReport report =
+            Take(Densify(field.light_field, options, pool, [&](const DensifyProgress& now) {
+              work.signals.SetProgress({now.work_done, now.work_total});
+            }));
+        if (!report.dense.empty()) Take(Result<void>(InputError(report.dense)));
+        return DensifyJson(report, options, 0);
+      },
+      &work.signals);
+}
+
 //   truth  file of a path whose frames become the ground truth; "": that of the options
 void Synthesise(SyntheticFieldOptions options, const std::string& truth, int threads,
                 const Tell& tell) {
@@ -229,6 +277,20 @@ void AddCaptures(py::module_& module) {
       .def_readwrite("verify", &StoreWords::verify)
       .def_readwrite("strict", &StoreWords::strict);
   module.def("compress", &CompressField);
+  py::class_<DensifyWords>(module, "DensifyWords")
+      .def(py::init<>())
+      .def_readwrite("output", &DensifyWords::output)
+      .def_readwrite("memory", &DensifyWords::memory)
+      .def_readwrite("cache", &DensifyWords::cache)
+      .def_readwrite("depths", &DensifyWords::depths)
+      .def_readwrite("spacing", &DensifyWords::spacing)
+      .def_readwrite("most", &DensifyWords::most)
+      .def_readwrite("divisor", &DensifyWords::divisor)
+      .def_readwrite("force", &DensifyWords::force)
+      .def_readwrite("resume", &DensifyWords::resume)
+      .def_readwrite("overwrite", &DensifyWords::overwrite)
+      .def_readwrite("strict", &DensifyWords::strict);
+  module.def("densify", &DensifyField);
   py::class_<SyntheticFieldOptions>(module, "SyntheticFieldOptions")
       .def(py::init<>())
       .def_readwrite("scene", &SyntheticFieldOptions::scene)

@@ -113,6 +113,26 @@ def test_broken_images_are_left_out_of_stores_with_a_warning(capture, tmp_path):
         lf.compress(lf.open(folder), tmp_path / "b.lfs", strict=True)
 
 
+def test_densified_stores_are_those_of_lfdensify(capture, field, run, tmp_path):
+    camera = field.camera(aperture_diameter=0.05, focus_distance=0.5)
+    lf.Path([camera]).save(tmp_path / "path.yaml")
+    run("lfdensify", capture, tmp_path / "path.yaml", "-o", tmp_path / "a.lfs", "--spacing", 0.5, "--most", 40,
+        "--force", "--cache", "none", "--depths", 0.15, 0.6)
+    told = []
+    ours = lf.densify(field, tmp_path / "b.lfs", camera, spacing=0.5, most=40, force=True, cache="none",
+                      depths=(0.15, 0.6), progress=lambda done, total: told.append((done, total)))
+    theirs = lf.open(tmp_path / "a.lfs")
+    assert len(ours) == len(theirs) > len(field) and ours.is_virtual.sum() == len(ours) - len(field)
+    assert np.array_equal(ours.image(len(ours) - 1), theirs.image(len(theirs) - 1), equal_nan=True)
+    assert told and told[-1][0] <= told[-1][1]
+    with pytest.raises(lf.UsageError, match="overwrite=True"):
+        lf.densify(field, tmp_path / "b.lfs", camera)
+    with pytest.raises(lf.UsageError, match="depths"):
+        lf.densify(field, tmp_path / "c.lfs", camera, depths=(3, 0.3))
+    with pytest.raises(lf.UsageError, match="has virtual LF images"):
+        lf.densify(ours, tmp_path / "c.lfs", camera)
+
+
 def test_synthetic_fields_are_those_of_lfsynth(run, tmp_path, path_file, path):
     run("lfsynth", "chart", "-o", tmp_path / "a", "--count", 4, "--size", "48x32", "--samples", 1, "--jitter", 0.1,
         "--seed", 5, "--bayer", "--noise", 0.01, "--distortion", "0.1,0.02", "--truth", path_file, "--truth-samples", 4)
