@@ -27,10 +27,8 @@ Result<void> Unroll(std::span<const Vec3> centres, const Vec3& subject, CameraPl
     const double arc = std::acos(std::clamp(-direction.z(), -1.0, 1.0));
     if (DegreesFromRadians(arc) > kMostArc_deg)
       return InputError(fmt::format(
-          "LF cameras surround the scene: one is {:.0f} degrees away from their middle, and "
-          "without "
-          "a camera path at most {:.0f} are possible; give the camera path of a film, so that "
-          "virtual LF images are made for its lenses",
+          "LF cameras surround the scene: one is {:.0f} degrees away from their middle, expected "
+          "at most {:.0f}; densify each side by itself ({{lfimport exclude}} leaves LF images out)",
           DegreesFromRadians(arc), kMostArc_deg));
     const double across = direction.head<2>().norm();
     plane->points.push_back(across > 0 ? Vec2(direction.head<2>() / across * (arc * radius))
@@ -78,7 +76,7 @@ Result<CameraPlane> CameraPlaneOf(const LightField& light_field) {
   if (!subject)
     return InputError(fmt::format(
         "LF cameras look up to {:.0f} degrees away from their mean direction, and not at one "
-        "point: give the camera path of a film, so that virtual LF images are made for its lenses",
+        "point: use parts of the light field that look in one direction ({{lfimport exclude}})",
         plane.widest_deg));
   LF_RETURN_IF_ERROR(Unroll(centres, *subject, &plane));
   return plane;

@@ -13,6 +13,7 @@
 
 #include "lf/core/log.h"
 #include "lf/core/shell_word.h"
+#include "lf/densify/densify_trial.h"
 #include "lf/densify/densify_work.h"
 #include "lf/densify/depth_cache.h"
 #include "lf/densify/depth_planes.h"

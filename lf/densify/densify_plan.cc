@@ -157,7 +157,12 @@ constexpr double kMostPlaces = 400'000;  // more would take minutes
 // Puts virtual LF cameras among the recorded ones.
 Result<void> FillCapture(const LightField& light_field, const DensifyChoices& choices,
                          double wanted_w, DensifyPlan* plan) {
-  LF_ASSIGN_OR_RETURN(const CameraPlane plane, CameraPlaneOf(light_field));
+  const Result<CameraPlane> found = CameraPlaneOf(light_field);
+  if (!found)
+    return Error{found.error().kind, found.error().message +
+                                         "; or give the camera path of a film, whose lenses are "
+                                         "then filled"};
+  const CameraPlane& plane = *found;
   LF_RETURN_IF_ERROR(CheckCameras(plane));
   // Beyond the LF cameras, virtual ones may only stand on a plane.
   const double outside_w = plane.is_unrolled ? 0 : kOutside * MedianSpacing(light_field);
@@ -217,7 +222,8 @@ Result<void> ChooseVirtual(const LightField& light_field, const DensifyChoices& 
   else
     LF_RETURN_IF_ERROR(FillCapture(light_field, choices, wanted_w, plan));
   plan->spacing_px = choices.spacing_px * plan->distance_w / wanted_w;
-  if (plan->virtual_cameras.empty() && !lenses)
+  const bool has_places = !lenses || std::isinf(plan->filled_radius_w);
+  if (plan->virtual_cameras.empty() && has_places)
     return UsageError(fmt::format(
         "no virtual LF camera has room between the {} LF cameras, which are {:.4g} apart, if "
         "virtual ones are {:.4g} apart: ask for a smaller {{spacing}}, or raise {{most}} ({})",

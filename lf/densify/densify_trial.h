@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tells whether virtual LF images would help a film, before any is made.
+// Judges by the tests of virtual LF images whether they help, and makes these tests for a film
+// before any is made.
 #pragma once
 
 #include <string>
@@ -12,6 +13,12 @@
 #include "lf/light_field/model/light_field.h"
 
 namespace lf {
+
+// Returns the reason why virtual LF images are not worth making; "" if they are, or if nothing was
+// tested. They are if the median gain is at least kLeastGainDb or, for a film, if they are not
+// worse than the mean and their median is at least kRightDb.
+std::string ObjectionOf(const std::vector<LeftOut>& tests, const InverseDepths& range,
+                        bool is_film);
 
 struct DensifyTrial {
   // The reason why virtual LF images do not help: the LF cameras are dense enough already, or the

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lf/densify/self_test.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -305,32 +303,6 @@ double MedianGainDb(const std::vector<LeftOut>& tests) {
   std::vector<double> gains;
   for (const LeftOut& test : tests) gains.push_back(test.GainDb());
   return Median(std::move(gains));
-}
-
-std::string ObjectionOf(const std::vector<LeftOut>& tests, const InverseDepths& range,
-                        bool is_film) {
-  if (tests.empty()) return "";
-  const double gain_db = MedianGainDb(tests), psnr_db = MedianPsnrDb(tests);
-  if (gain_db >= kLeastGainDb) return "";
-  // A mean of neighbours may be as right at one depth, but it cannot blur as a lens does.
-  if (is_film && gain_db >= 0 && psnr_db >= kRightDb) return "";
-  const auto worst =
-      std::min_element(tests.begin(), tests.end(),
-                       [](const LeftOut& a, const LeftOut& b) { return a.GainDb() < b.GainDb(); });
-  const std::string reason =
-      psnr_db >= kNearlyRightDb
-          ? std::string(
-                "The mean is nearly right, because neighbouring LF images differ little: render "
-                "the light field as it is, or try {force}")
-          : fmt::format(
-                "Poses may be wrong, for example where equal patterns were confused, or the depths "
-                "({:.4g} to {:.4g}): check the poses, state {{depths}}, or try {{force}}",
-                1 / range.greatest, range.least > 0 ? 1 / range.least : INFINITY);
-  return fmt::format(
-      "{} LF images were left out in turn and made from their neighbours: at {:.0f} dB, the result "
-      "is only {:.1f} dB better than a mean of the neighbours, expected at least {} dB (worst: {}, "
-      "{:.1f} dB). {}",
-      tests.size(), psnr_db, gain_db, kLeastGainDb, worst->name, worst->GainDb(), reason);
 }
 
 }  // namespace lf

@@ -59,10 +59,4 @@ std::vector<LeftOut> TestsOf(const std::vector<LeftOut>& tests, bool is_beyond);
 double MedianPsnrDb(const std::vector<LeftOut>& tests);
 double MedianGainDb(const std::vector<LeftOut>& tests);
 
-// Returns the reason why virtual LF images are not worth making; "" if they are, or if nothing was
-// tested. They are if the median gain is at least kLeastGainDb or, for a film, if they are not
-// worse than the mean and their median is at least kRightDb.
-std::string ObjectionOf(const std::vector<LeftOut>& tests, const InverseDepths& range,
-                        bool is_film);
-
 }  // namespace lf

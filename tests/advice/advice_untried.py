@@ -50,7 +50,7 @@ UNTRIED = {
     "page_server: or use --text": "depends on how the programs were built",
     "page_port: or --serve 0 for any free port": "serves until it is interrupted; lfvisualizer_test.py does it",
     "orbit: or let the camera stand (--move focus-pull)": CAPTURE + "a bent one; lfexample_test.py has it",
-    "example_path: (lfdensify, or lfrenderer --densify), or record more": CAPTURE + "a sparse one of a deep scene",
+    "example_path: (--densify chooses one that they fill), or set aperture_diameter": CAPTURE + "a sparse, deep scene",
     "view_grid: LF cameras look up to {:.0f} degrees": CAPTURE + "cameras around a subject; focus_views_test.py",
     "camera_plane: densify each side by itself": CAPTURE + "cameras around a subject; lfdensify_test.py has it",
     "open_light_field: or import with lfimport --bayer RGGB": CAPTURE + "camera raw files without a pattern",

@@ -119,7 +119,7 @@ SETUP = [
     "lfpreprocessor capture path.yaml -o plain --lens-weights none -q",
     "lfpreprocessor capture path.yaml -o few --max-images 4 -q",
     "lfcompressor capture -o capture.lfs -q",
-    "lfdensify capture path.yaml -o thick.lfs --force --most 12 -q",
+    "lfdensify capture path.yaml -o thick.lfs --force --most 40 --spacing 0.5 --cache none -q",
     "lfpreprocessor thick.lfs path.yaml -o guardless --no-guard --lens-weights none -q",
     "lfrenderer capture path.yaml -o frames --format png -q",
     "for k in 1 2; do lfrenderer capture path.yaml -o shards --frames 1 --shard $k/2 -q; done",
