@@ -32,14 +32,15 @@ constexpr lf::HelpTexts kHelp = {
     .summary = lf::SummaryOf("lfdensify"),
     .usage = R"(  lfdensify LIGHTFIELD -o STORE.lfs [OPTIONS]
   lfdensify LIGHTFIELD PATH -o STORE.lfs [OPTIONS])",
-    .examples = R"(  lfdensify capture/ -o dense.lfs                 # for any camera path
-  lfdensify capture/ path.yaml -o film.lfs        # only what the frames of a film look at
+    .examples = R"(  lfdensify capture/ path.yaml -o film.lfs        # for the lenses of one film
+  lfdensify capture/ -o dense.lfs                 # for any camera path
   lfdensify capture/ -o dense.lfs --divisor 2     # photographs with more pixels than frames
   lfrenderer dense.lfs path.yaml -o frames        # a store is a LIGHTFIELD)",
     .details =
         R"(If few photographs are rendered with a large aperture, what is out of focus appears as separate
 copies. The program estimates the depth of every pixel by comparing neighbouring LF images, and makes
-the images of virtual LF cameras between the recorded ones. Recorded LF images stay as they are.
+the images of virtual LF cameras in the lenses of a film, or between the recorded ones if there is no
+film. Recorded LF images stay as they are. lfexample --densify chooses a lens that can be filled.
 doc/densify.md shows where this works and where it fails.
 
 First, some LF images are left out in turn and made from their neighbours. If the result is hardly
@@ -66,14 +67,17 @@ void AddInput(CLI::App& app, Arguments& a) {
   input
       .Add("LIGHTFIELD", a.light_field.path,
            "Light field of any supported kind\n"
-           "Its LF cameras must surround an area, and look in one direction or at one point.")
+           "If no PATH is given, its LF cameras must surround an area, and look in one direction, "
+           "or "
+           "at one point from one side.")
       ->required()
       ->check(lf::NotEmpty());
   input
       .Add("PATH", a.path,
            "Camera path of a film (none)\n"
-           "Only virtual LF images that contribute to its frames are made, as densely as these "
-           "frames need. If it is not given, virtual LF images are made wherever LF cameras are "
+           "Virtual LF images fill the lenses of its frames, as densely as these need, wherever LF "
+           "cameras are near. If it is not given, virtual LF images are made wherever LF cameras "
+           "are "
            "around, densely enough for a focus anywhere in the scene.")
       ->check(lf::NotEmpty());
   a.light_field.AddOptionsTo(app);

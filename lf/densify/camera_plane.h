@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The positions of LF cameras as points of a plane, and which of them are neighbours.
+// The positions of all LF cameras of a light field as points of one plane.
 #pragma once
 
 #include <cstdint>

@@ -267,7 +267,7 @@ Result<void> Densifier::TestBeyond() {
   const std::vector<LeftOut> beyond = TestsOf(report_.tests, true);
   std::string objection = ObjectionOf(beyond, plan_.range, plan_.is_film);
   if (objection.empty() || options_.choices.force) return {};
-  DropBeyond(&plan_);
+  DropBeyond(options_.choices.frames, &plan_);
   if (plan_.virtual_cameras.empty()) return InputError(std::move(objection));
   LogWarning(
       "virtual LF images are made between the LF cameras only, and fill less of the lens, because "
@@ -418,12 +418,12 @@ Result<DensifyReport> Densifier::Run() {
   report_.shift_px = plan_.ShiftPx();
   report_.distance_w = plan_.distance_w;
   report_.spacing_px = plan_.spacing_px;
-  if (std::isfinite(plan_.filled_radius_w)) report_.filled_diameter_w = 2 * plan_.filled_radius_w;
   if (!report_.dense.empty()) return std::move(report_);
   LogDebug("{}: {}", options_.store.string(), SettingsInWords(plan_, options_.choices));
   LF_RETURN_IF_ERROR(CheckPoses());
   LF_RETURN_IF_ERROR(Test());
   report_.virtual_count = plan_.virtual_cameras.size();
+  if (std::isfinite(plan_.filled_radius_w)) report_.filled_diameter_w = 2 * plan_.filled_radius_w;
 
   LF_RETURN_IF_ERROR(OpenWriter());
   if (report_.was_there) return std::move(report_);

@@ -274,7 +274,13 @@ bool IsWidened(const DensifyPlan& plan) {
                      [](const VirtualCamera& camera) { return camera.is_beyond; });
 }
 
-void DropBeyond(DensifyPlan* plan) {
+void DropBeyond(std::span<const RenderCamera> frames, DensifyPlan* plan) {
+  for (const VirtualCamera& camera : plan->virtual_cameras)
+    for (const RenderCamera& frame : frames) {
+      const double away_w = (camera.camera.CentreWorld() - frame.pinhole.CentreWorld()).norm();
+      if (camera.is_beyond && away_w <= frame.aperture.radius_w)
+        plan->filled_radius_w = std::min(plan->filled_radius_w, away_w);
+    }
   std::erase_if(plan->virtual_cameras,
                 [](const VirtualCamera& camera) { return camera.is_beyond; });
   FindSources(plan);

@@ -94,7 +94,8 @@ Result<DensifyPlan> PlanDensify(const LightField& light_field, const LfImageStor
 
 // Returns true if virtual LF cameras stand beyond the hull of the recorded ones.
 bool IsWidened(const DensifyPlan& plan);
-// Leaves out the virtual LF cameras beyond the hull of the recorded ones.
-void DropBeyond(DensifyPlan* plan);
+// Leaves out the virtual LF cameras beyond the hull of the recorded ones, so that the lenses of the
+// frames are filled less far.
+void DropBeyond(std::span<const RenderCamera> frames, DensifyPlan* plan);
 
 }  // namespace lf

@@ -123,6 +123,14 @@ std::vector<uint32_t> FilmLenses::Serving() const {
   return {serving.begin(), serving.end()};
 }
 
+size_t FilmLenses::NearestFrame(const Vec3& point_world) const {
+  const auto nearest = std::min_element(
+      centres_world_.begin(), centres_world_.end(), [&](const Vec3& a, const Vec3& b) {
+        return (a - point_world).squaredNorm() < (b - point_world).squaredNorm();
+      });
+  return static_cast<size_t>(nearest - centres_world_.begin());
+}
+
 double FilmLenses::Area_w2() const {
   double area = 0;
   for (size_t f = 0; f < frames_.size(); ++f) {
@@ -166,22 +174,15 @@ LensPlaces FilmLenses::Places(double distance, double outside) const {
             const LatticePlace at = PlaceAmong(chart.points, place);
             if ((at.place - at.inside).norm() <= outside + 1e-3 * distance) entry->second = at;
           }
-          if (!entry->second && from_middle <= radius && from_middle < result.filled_radius_w) {
-            result.filled_radius_w = from_middle;
-            result.least_filled_frame = f;
-          }
+          if (!entry->second && from_middle <= radius)
+            result.filled_radius_w = std::min(result.filled_radius_w, from_middle);
         }
     }
     for (auto& [at, place] : lattice) {
       if (!place) continue;
       const Vec3 centre_world = world_from_plane * Vec3(place->place.x(), place->place.y(), 0);
       // Each place belongs to one section, also at the border between two.
-      size_t nearest = 0;
-      for (size_t f = 1; f < frames_.size(); ++f)
-        if ((centres_world_[f] - centre_world).squaredNorm() <
-            (centres_world_[nearest] - centre_world).squaredNorm())
-          nearest = f;
-      if (section_of_frame_[nearest] != s) continue;
+      if (section_of_frame_[NearestFrame(centre_world)] != s) continue;
       const bool is_recorded = std::any_of(chart.ids.begin(), chart.ids.end(), [&](uint32_t id) {
         return (recorded_world[id] - centre_world).norm() < distance / 2;
       });
@@ -203,10 +204,8 @@ VirtualCamera FilmLenses::CameraAt(const LensPlace& place, double distance, int 
     source.index = charts_[place.section].ids[source.index];
     f_px += source.weight * light_field_.Camera(LfImageId{source.index}).intrinsics.fx_px / divisor;
   }
-  size_t nearest = 0;
+  const size_t nearest = NearestFrame(place.centre_world);
   const auto away = [&](size_t f) { return (centres_world_[f] - place.centre_world).norm(); };
-  for (size_t f = 1; f < frames_.size(); ++f)
-    if (away(f) < away(nearest)) nearest = f;
   const Mat3& rotation = frames_[nearest].pinhole.cam_from_world.rotation;
   result.camera.cam_from_world = {rotation, -(rotation * place.centre_world)};
   Directions directions;

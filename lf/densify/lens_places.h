@@ -41,10 +41,8 @@ struct LensPlace {
 
 struct LensPlaces {
   std::vector<LensPlace> places;
-  // Least radius, over all frames, up to which the lens is filled, and the frame's number. Infinity
-  // if all lenses are filled.
+  // Least radius, over all frames, up to which the lens is filled; infinity if all are filled.
   double filled_radius_w = 0;
-  size_t least_filled_frame = 0;
 };
 
 class FilmLenses {
@@ -71,6 +69,9 @@ class FilmLenses {
   VirtualCamera CameraAt(const LensPlace& place, double distance, int divisor) const;
 
  private:
+  // Returns the frame whose lens is nearest to a point.
+  size_t NearestFrame(const Vec3& point_world) const;
+
   const LightField& light_field_;
   std::span<const RenderCamera> frames_;
   std::vector<FilmSection> sections_;

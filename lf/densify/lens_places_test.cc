@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lf/densify/densify_plan.h"
 #include "lf/densify/test_world.h"
 
 namespace lf {
@@ -91,7 +92,6 @@ TEST(FilmLenses, BesideARowTheLensIsFilledAsFarAsAllowed) {
   const FilmLenses lenses(field, frames);
   const LensPlaces found = lenses.Places(0.1, 0.5);
   EXPECT_NEAR(found.filled_radius_w, 0.55, 0.06);
-  EXPECT_EQ(found.least_filled_frame, 0u);
   double highest = 0, farthest = 0;
   for (const LensPlace& place : found.places) {
     highest = std::max(highest, std::abs(place.centre_world.y()));
@@ -101,6 +101,20 @@ TEST(FilmLenses, BesideARowTheLensIsFilledAsFarAsAllowed) {
   EXPECT_GT(highest, 0.4);
   EXPECT_LE(highest, 0.501);
   EXPECT_GT(farthest, 0.7);
+}
+
+TEST(DropBeyond, LeavesWhatIsBetweenLfCamerasAndSaysWhatIsFilled) {
+  const std::vector<RenderCamera> frames = {Frame(0, 0.8)};
+  DensifyPlan plan;
+  plan.is_film = true;
+  for (const double y : {0.0, 0.3, 0.5, 0.9}) {
+    plan.virtual_cameras.emplace_back();
+    plan.virtual_cameras.back().camera = CameraAt(0, y);
+    plan.virtual_cameras.back().is_beyond = y > 0.1;
+  }
+  DropBeyond(frames, &plan);
+  EXPECT_EQ(plan.virtual_cameras.size(), 1u);
+  EXPECT_NEAR(plan.filled_radius_w, 0.3, 1e-12);
 }
 
 TEST(FilmLenses, ThePictureOfAPlaceHoldsThatOfTheFrame) {
