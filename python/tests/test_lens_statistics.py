@@ -111,16 +111,21 @@ def test_lenses_without_an_order_are_refused(field, path):
         lf.through(field, path[0].replace(position=(5, 0, -1)))
 
 
-# A frame of so many parts that it takes much longer than a second. Each thread has sums of its own, so that the memory
-# is for two threads, on any machine.
+# With the least memory, which the error names, the frame has many parts, so that it takes much longer than a second.
+# Each thread needs memory of its own.
 INTERRUPTED = """
-import os, signal, sys, threading
+import os, re, signal, sys, threading
 import lfrendertools as lf
 field = lf.open(sys.argv[1])
 camera = lf.Path.load(sys.argv[2], field.unit_m)[0]
+large = camera.replace(resolution=(6000, 4000))
+try:
+    lf.through(field, large, memory="2300M", threads=2)
+except lf.OutputError as error:
+    least = re.search("at least ([0-9]+) MiB", str(error))[1]
 threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT)).start()
 try:
-    lf.through(field, camera.replace(resolution=(6000, 4000)), memory="2300M", threads=2)
+    lf.through(field, large, memory=f"{least}M", threads=2)
     print("finished")
 except KeyboardInterrupt:
     print("interrupted")

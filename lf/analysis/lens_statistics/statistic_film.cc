@@ -28,30 +28,28 @@ Result<StatisticPlan> PlanOf(const FilmSetup& setup, const RenderCamera& camera,
   const size_t result_bytes =
       static_cast<size_t>(width) * height * (static_cast<size_t>(kind) * 8 + 4);
   const size_t row_bytes = ElementValues::BytesOfRow(width, static_cast<int>(kind), image_count);
-  const auto plan_for = [&](size_t bytes, size_t count) {
-    return PlanMemory(bytes, setup.light_field(), setup.film().reading, width, height, count,
-                      setup.pool().thread_count(), 0, false, 1, camera.surface.get());
+  const auto plan_for = [&](size_t bytes, size_t plates, size_t other_bytes) {
+    return PlanMemory(bytes, setup.light_field(), setup.film().reading, width, height, plates,
+                      setup.pool().thread_count(), other_bytes, false, 1, camera.surface.get());
   };
+  // Refuses what does not suffice for the values of one row of elements.
+  LF_RETURN_IF_ERROR(plan_for(memory_bytes, 1, result_bytes + row_bytes));
+  const auto others = [&](const MemoryPlan& collect) { return collect.total_bytes + result_bytes; };
   // A quarter of the memory is for LF images and their plates, more only if they need it.
-  Result<MemoryPlan> collect = plan_for(memory_bytes / 4, std::min(kMostPlates, image_count));
-  if (!collect) collect = plan_for(memory_bytes, 1);
+  Result<MemoryPlan> collect = plan_for(memory_bytes / 4, std::min(kMostPlates, image_count), 0);
+  if (!collect || memory_bytes < others(*collect) + row_bytes)
+    collect = plan_for(memory_bytes - result_bytes - row_bytes, 1, 0);
   if (!collect) return collect.error();
-  const size_t others = collect->total_bytes + result_bytes;
-  if (memory_bytes < others + row_bytes)
-    return OutputError(fmt::format(
-        "{{memory {}}} is too small: the values of a row of {} elements in {} LF images, the "
-        "sums of a frame and two LF images need at least {} MiB",
-        ByteText(memory_bytes), width, image_count, (others + row_bytes) / kMiB + 1));
   StatisticPlan plan;
   plan.collect = *collect;
-  const size_t rows = (memory_bytes - others) / row_bytes;
+  const size_t rows = (memory_bytes - others(*collect)) / row_bytes;
   plan.rows = static_cast<int>(std::min(rows, static_cast<size_t>(height)));
   if (plan.rows < height) return plan;
   // Further frames share the reading of the LF images, if their values fit.
   const size_t values_bytes = static_cast<size_t>(height) * row_bytes;
   const size_t plates_bytes = collect->frames_per_pass * collect->plate_bytes;
-  plan.frames_per_pass =
-      1 + (memory_bytes - others - values_bytes) / (values_bytes + plates_bytes + result_bytes);
+  plan.frames_per_pass = 1 + (memory_bytes - others(*collect) - values_bytes) /
+                                 (values_bytes + plates_bytes + result_bytes);
   return plan;
 }
 

@@ -133,12 +133,15 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
       std::max({std::min(kEnoughBatchImages, frame_count * kBatchBytesPerFrame / need.kept_bytes),
                 static_cast<size_t>(thread_count),
                 std::min(kMostBatchImages, kRaysPerElement * element_count / need.pixels)});
-  plan.batch_image_count = std::clamp<size_t>(free_bytes / 4 / pair_bytes, 1, enough);
+  plan.batch_image_count = std::clamp<size_t>(
+      std::min(free_bytes / 4, free_bytes - frame_bytes) / pair_bytes, 1, enough);
   // Memory for more plans than one frame needs lets several frames be planned together: threads
   // then wait less often for the last task of a frame.
-  plan.plan_bytes =
-      std::max(plan.batch_image_count * need.plan_bytes, std::min(kMostPlanBytes, free_bytes / 16));
-  const size_t images_bytes = plan.batch_image_count * copies * need.kept_bytes + plan.plan_bytes;
+  const size_t batches_bytes = plan.batch_image_count * copies * need.kept_bytes;
+  const size_t spare_bytes = free_bytes - std::min(free_bytes, frame_bytes + batches_bytes);
+  plan.plan_bytes = std::max(plan.batch_image_count * need.plan_bytes,
+                             std::min({kMostPlanBytes, free_bytes / 16, spare_bytes}));
+  const size_t images_bytes = batches_bytes + plan.plan_bytes;
   plan.frames_finished_at_once =
       std::min<size_t>(static_cast<size_t>(thread_count),
                        1 + (images_bytes - plan.plan_bytes) / (element_count * develop_bytes));

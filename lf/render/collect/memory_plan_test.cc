@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 namespace lf {
 namespace {
 
@@ -25,6 +27,20 @@ TEST(MemoryPlan, StaysWithinTheMemory) {
       EXPECT_LE(plan.frames_per_pass * plan.plate_bytes + images, memory) << memory << " " << width;
       EXPECT_GE(plan.batch_image_count, 1u);
     }
+}
+
+TEST(MemoryPlan, TheLeastMemoryThatIsNamedSuffices) {
+  for (const int width : {640, 4000}) {
+    const auto plan = [&](size_t mib) {
+      return PlanMemory(mib * kMiB, Field(width, width), Estimator::kBilinear, 6000, 4000, 1, 2,
+                        300 * kMiB);
+    };
+    const std::string message = plan(1).error().message;
+    const size_t least = std::stoul(message.substr(message.find("at least ") + 9));
+    EXPECT_FALSE(plan(least - 1)) << message;
+    for (size_t mib = least; mib < 3 * least; mib += 50)
+      EXPECT_LE(plan(mib)->total_bytes, mib * kMiB) << width << " " << mib;
+  }
 }
 
 TEST(MemoryPlan, MoreMemoryNeverMeansMorePasses) {
