@@ -90,7 +90,10 @@ Result<ViewGrid> ViewGrid::Make(const LightField& light_field, int columns, int 
                   rows > 1 ? extent.y() / (rows - 1) : 0};
   grid.first_w_ = {columns > 1 ? least.x() : (least.x() + most.x()) / 2,
                    rows > 1 ? least.y() : (least.y() + most.y()) / 2};
-  grid.k_ = PinholeOf(light_field.Camera(MiddleCamera(light_field)).intrinsics);
+  // Virtual LF images may be larger than photographs, so that they hold what a lens sees.
+  const LfImageId middle = MiddleCamera(
+      light_field, [&](LfImageId id) { return !light_field.cameras[id.value].is_virtual; });
+  grid.k_ = PinholeOf(light_field.Camera(middle).intrinsics);
   grid.k_.skew_px = 0;
   if (const PrincipalPoints points = PrincipalPointsOf(light_field, plane.points);
       points.AreEven()) {

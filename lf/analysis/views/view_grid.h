@@ -21,11 +21,11 @@ class ViewGrid {
  public:
   // Places the views evenly in the rectangle around the LF cameras, along the mean right and down
   // axes of these, in the plane through their mean position. A single column or row is in the
-  // middle. The views have the intrinsics of the LF camera in the middle without distortion. If
-  // the principal points of all LF cameras move evenly with their positions, as in a slab that is
-  // rectified to a plane, so do those of the views.
-  // kInput: LF cameras look more than kMostTurn_deg (densify/camera_plane.h) from their mean
-  // direction. kUsage: columns or rows are not from 1 to kMostViewsAcross.
+  // middle. The views have the intrinsics of the recorded LF camera in the middle without
+  // distortion. If the principal points of all LF cameras move evenly with their positions, as in a
+  // slab that is rectified to a plane, so do those of the views. kInput: LF cameras look more than
+  // kMostTurn_deg (densify/camera_plane.h) from their mean direction. kUsage: columns or rows are
+  // not from 1 to kMostViewsAcross.
   static Result<ViewGrid> Make(const LightField& light_field, int columns, int rows);
 
   int columns() const { return columns_; }

@@ -82,6 +82,14 @@ TEST(ViewGrid, TakesOnlyRecordedLfCamerasAtItsPlaces) {
   EXPECT_FALSE(grid->RecordedAt(7));
 }
 
+TEST(ViewGrid, HasTheIntrinsicsOfRecordedLfImages) {
+  LightField capture = Capture(5, 3);
+  const int width_px = capture.intrinsics[7].width_px;
+  capture.intrinsics[7].width_px += 40;
+  capture.cameras[7].is_virtual = true;  // the one in the middle
+  EXPECT_EQ(ViewGrid::Make(capture, 5, 3)->width_px(), width_px);
+}
+
 TEST(ViewGrid, OfBracketsHasNoLfCameras) {
   LightField capture = Capture(5, 3);
   capture.encoding.masks_clipped = true;
