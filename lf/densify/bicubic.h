@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 #include "lf/core/catmull_rom.h"
 #include "lf/core/image.h"
@@ -14,6 +15,36 @@
 #include "lf/storage/load/recorded_image.h"
 
 namespace lf {
+
+// Four lanes of a pixel, which the compiler computes with at once.
+using PixelLanes [[gnu::vector_size(16)]] = float;
+
+inline PixelLanes LanesOf(const uint16_t* pixel) {
+  using Stored [[gnu::vector_size(8)]] = uint16_t;
+  Stored stored;
+  std::memcpy(&stored, pixel, sizeof(stored));
+  return __builtin_convertvector(stored, PixelLanes);
+}
+
+// Interpolates as SampleBicubic() between pixels none of which is masked. Returns false if one is.
+//   first  of the lanes of the first of four pixels in each row
+inline bool SampleShown(const Image<uint16_t>& light, int first, const int rows[4],
+                        const std::array<float, 4>& across, const std::array<float, 4>& down,
+                        float colour[4]) {
+  PixelLanes result = {}, least = {1, 1, 1, 1};
+  for (size_t j = 0; j < 4; ++j) {
+    const uint16_t* row = light.row(rows[j]) + first;
+    PixelLanes sum = {};
+    for (size_t i = 0; i < 4; ++i) {
+      const PixelLanes pixel = LanesOf(row + i * LfPixels::kRgbLanes);
+      least = pixel < least ? pixel : least;
+      sum += across[i] * pixel;
+    }
+    result += down[j] * sum;
+  }
+  std::memcpy(colour, &result, sizeof(result));
+  return least[LfPixels::kRayLane] > 0;
+}
 
 // Interpolates between the pixels of WorkingImage::light around continuous position (x, y).
 // Premultiplied light and opacity get the same weights, so that the colours of transparent pixels
@@ -36,6 +67,9 @@ inline bool SampleBicubic(const Image<uint16_t>& light, float x_px, float y_px, 
     columns[i] = std::clamp(column + i - 1, 0, width - 1) * kLanes;
     rows[i] = std::clamp(row + i - 1, 0, height - 1);
   }
+  if (column >= 1 && column + 2 < width &&
+      SampleShown(light, columns[0], rows, across, down, colour))
+    return true;
   for (int lane = 0; lane < kLanes; ++lane) colour[lane] = 0;
   const uint16_t* nearest =
       light.row(rows[1 + (y - top >= 0.5f)]) + columns[1 + (x - left >= 0.5f)];

@@ -126,10 +126,11 @@ class SourceView {
   const float step_, first_;
 };
 
-// A candidate depth of a pixel and the votes for it.
+// A candidate depth of a pixel, the votes for it, and the point in each source's image.
 struct Candidate {
   float depth = 0;
   float votes = 0;
+  std::array<SourceView::Seen, kMostSources> seen;
 };
 
 class Synthesizer {
@@ -168,7 +169,7 @@ class Synthesizer {
           continue;
         }
         if (elected[0].votes < kWeak) ++weak;
-        image.trust.at(x, y) = Mix(x, y, {elected.data(), count}, &image.light.at(x, y));
+        image.trust.at(x, y) = Mix({elected.data(), count}, &image.light.at(x, y));
       }
     const double shown = static_cast<double>(width_) * height_ - static_cast<double>(transparent);
     image.weak_share = static_cast<double>(weak) / std::max(shown, 1.0);
@@ -232,6 +233,15 @@ class Synthesizer {
     for (const auto& [x, y] : open) holes_.at(x, y) = farthest_;
   }
 
+  // Fills a candidate without votes.
+  void See(int x, int y, float depth, Candidate* candidate) const {
+    candidate->depth = depth;
+    candidate->votes = 0;
+    for (size_t i = 0; i < views_.size(); ++i)
+      candidate->seen[i] = views_[i].See(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f,
+                                         depth, per_tolerance_);
+  }
+
   // Writes the candidates of a pixel with their votes, the elected one first. Returns their number;
   // 0 if nothing is at the pixel.
   size_t Vote(int x, int y, std::array<Candidate, kMostSources>* result) const {
@@ -249,21 +259,22 @@ class Synthesizer {
       for (size_t i = 0; i < count; ++i)
         is_known |= std::abs(found[i].depth - depth) < kSame * tolerance_;
       if (is_known) continue;
+      Candidate& candidate = found[count];
+      See(x, y, depth, &candidate);
       float votes = 0;
-      for (const SourceView& view : views_) {
-        const SourceView::Seen seen = view.See(static_cast<float>(x) + 0.5f,
-                                               static_cast<float>(y) + 0.5f, depth, per_tolerance_);
+      for (size_t i = 0; i < views_.size(); ++i) {
+        const SourceView::Seen& seen = candidate.seen[i];
         if (!seen.is_inside) continue;
-        votes += view.weight() * Agreement(seen.error);
-        if (seen.error < kThrough) votes -= kAgainst * view.weight();
+        votes += views_[i].weight() * Agreement(seen.error);
+        if (seen.error < kThrough) votes -= kAgainst * views_[i].weight();
       }
-      found[count] = {depth, votes};
+      candidate.votes = votes;
       if (count > 0 && votes > found[best].votes + (depth > found[best].depth ? -kNearer : kNearer))
         best = count;
       ++count;
     }
     if (count == 0) {
-      found[0] = {holes_.at(x, y), 0};
+      See(x, y, holes_.at(x, y), &found[0]);
       return IsCarved(x, y, found[0].depth) ? 0 : 1;
     }
     std::swap(found[0], found[best]);
@@ -271,7 +282,7 @@ class Synthesizer {
   }
 
   // Writes the colour of a pixel; leaves it 0 if no source shows it. Returns the trust in it.
-  uint8_t Mix(int x, int y, std::span<const Candidate> elected, uint16_t* pixel) const {
+  uint8_t Mix(std::span<const Candidate> elected, uint16_t* pixel) const {
     constexpr float kClose = 0.6f;  // candidates with so many fewer votes have no part
     float colour[kLanes] = {}, sum = 0, spread = 0;
     for (const Candidate& candidate : elected) {
@@ -280,7 +291,7 @@ class Synthesizer {
       const float share = rest * rest * rest;
       float at_depth[kLanes];
       float* const wants_spread = &candidate == elected.data() ? &spread : nullptr;
-      if (!ColourAt(x, y, candidate.depth, at_depth, wants_spread)) continue;
+      if (!ColourOf(candidate, at_depth, wants_spread)) continue;
       for (int c = 0; c < kLanes; ++c) colour[c] += share * at_depth[c];
       sum += share;
     }
@@ -296,7 +307,7 @@ class Synthesizer {
   // Computes the colour of a pixel if it has this depth. False if no source shows it.
   //   spread  receives the spread of the colours of the sources that agree on the depth; may be
   //   null
-  bool ColourAt(int x, int y, float depth, float result[kLanes], float* spread) const {
+  bool ColourOf(const Candidate& candidate, float result[kLanes], float* spread) const {
     // The more sources agree on the depth, the less the others count.
     constexpr float kFewVotes = 0.02f;
     // If sources with so much of the weight are opaque, a small error of the depth moved the others
@@ -309,12 +320,11 @@ class Synthesizer {
     std::array<Sampled, kMostSources> sampled;
     size_t count = 0;
     float opaque = 0, whole = 0;
-    for (const SourceView& view : views_) {
-      const SourceView::Seen seen = view.See(static_cast<float>(x) + 0.5f,
-                                             static_cast<float>(y) + 0.5f, depth, per_tolerance_);
+    for (size_t i = 0; i < views_.size(); ++i) {
+      const SourceView::Seen& seen = candidate.seen[i];
       Sampled& sample = sampled[count];
-      if (!seen.is_inside || !view.Sample(seen, sample.colour)) continue;
-      sample.weight = view.weight();
+      if (!seen.is_inside || !views_[i].Sample(seen, sample.colour)) continue;
+      sample.weight = views_[i].weight();
       sample.agreement = Agreement(seen.error);
       sample.opacity = OpacityOfLane(sample.colour[kColours]);
       whole += sample.weight;
