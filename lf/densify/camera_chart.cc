@@ -65,10 +65,11 @@ std::vector<uint32_t> NearestAllAround(const CameraChart& chart, uint32_t id, do
 }
 
 // Returns the two LF cameras that are nearest to one, but not at its position.
-std::vector<uint32_t> NearestTwo(const LightField& light_field, uint32_t id) {
+std::vector<uint32_t> NearestTwo(const LightField& light_field, std::span<const uint32_t> among,
+                                 uint32_t id) {
   const Vec3 centre = light_field.Camera(LfImageId{id}).CentreWorld();
   std::vector<std::pair<double, uint32_t>> order;
-  for (uint32_t other = 0; other < light_field.size(); ++other) {
+  for (const uint32_t other : among) {
     const double distance = (light_field.Camera(LfImageId{other}).CentreWorld() - centre).norm();
     if (distance > 0) order.emplace_back(distance, other);
   }
@@ -80,14 +81,33 @@ std::vector<uint32_t> NearestTwo(const LightField& light_field, uint32_t id) {
 
 }  // namespace
 
-CameraChart ChartAround(const LightField& light_field, const PinholeCamera& camera,
-                        double inverse_distance) {
+std::vector<uint32_t> FarEnoughApart(const LightField& light_field,
+                                     const std::optional<Vec3>& subject) {
+  const double most_cosine = std::cos(RadiansFromDegrees(kLeastApart_deg));
+  std::vector<uint32_t> ids;
+  std::vector<Vec3> directions;  // [ids]: from the subject
+  for (uint32_t id = 0; id < light_field.size(); ++id) {
+    if (subject) {
+      const Vec3 direction =
+          (light_field.Camera(LfImageId{id}).CentreWorld() - *subject).normalized();
+      if (std::any_of(directions.begin(), directions.end(),
+                      [&](const Vec3& other) { return direction.dot(other) > most_cosine; }))
+        continue;
+      directions.push_back(direction);
+    }
+    ids.push_back(id);
+  }
+  return ids;
+}
+
+CameraChart ChartAround(const LightField& light_field, std::span<const uint32_t> among,
+                        const PinholeCamera& camera, double inverse_distance) {
   const double most = std::tan(RadiansFromDegrees(kMostAside_deg));
   const Ray ray = CentralRay(camera);
   const Vec3 along = camera.cam_from_world.rotation * ray.direction;
   const Vec3 direction = along / along.z();
   CameraChart chart;
-  for (uint32_t id = 0; id < light_field.size(); ++id) {
+  for (const uint32_t id : among) {
     const PinholeCamera other = light_field.Camera(LfImageId{id});
     const Vec3 other_centre = other.CentreWorld();
     const Vec3 centre = camera.cam_from_world * other_centre;
@@ -113,6 +133,7 @@ double InverseDistanceOf(const PinholeCamera& camera, const std::optional<Vec3>&
 }
 
 std::vector<std::vector<uint32_t>> CompareWith(const LightField& light_field,
+                                               std::span<const uint32_t> among,
                                                const std::optional<Vec3>& subject) {
   constexpr size_t kUsual = 3;  // the distance to the third nearest LF camera is the usual one
   constexpr double kMostTurned_deg = 22;  // as seen from the subject
@@ -120,10 +141,11 @@ std::vector<std::vector<uint32_t>> CompareWith(const LightField& light_field,
     return InverseDistanceOf(light_field.Camera(LfImageId{id}), subject);
   };
   const auto chart_of = [&](uint32_t id) {
-    return ChartAround(light_field, light_field.Camera(LfImageId{id}), inverse_distance_of(id));
+    return ChartAround(light_field, among, light_field.Camera(LfImageId{id}),
+                       inverse_distance_of(id));
   };
   std::vector<double> usual;
-  for (uint32_t id = 0; id < light_field.size(); ++id) {
+  for (const uint32_t id : among) {
     std::vector<double> distances;
     for (const Vec2& point : chart_of(id).points) distances.push_back(point.norm());
     if (distances.empty()) continue;
@@ -138,7 +160,7 @@ std::vector<std::vector<uint32_t>> CompareWith(const LightField& light_field,
                             ? std::tan(RadiansFromDegrees(kMostTurned_deg)) / inverse_distance
                             : std::numeric_limits<double>::infinity();
     result.push_back(NearestAllAround(chart_of(id), id, median, most));
-    if (result.back().empty()) result.back() = NearestTwo(light_field, id);
+    if (result.back().empty()) result.back() = NearestTwo(light_field, among, id);
   }
   return result;
 }

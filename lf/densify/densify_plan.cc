@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -20,6 +21,7 @@
 #include "lf/densify/pair_map.h"
 #include "lf/densify/working_image.h"
 #include "lf/light_field/model/capture_geometry.h"
+#include "lf/light_field/model/keep_images.h"
 #include "lf/selection/image_index.h"
 #include "lf/selection/select.h"
 
@@ -29,7 +31,7 @@ namespace {
 constexpr int kLeastPlanes = 24, kMostPlanes = 256;
 constexpr double kPlaneStep_px = 0.35;
 constexpr double kTolerance_px = 0.6;
-constexpr double kOutside = 0.5;  // of the median distance between LF cameras
+constexpr double kOutside = 0.5;  // of the median distance between LF cameras that are used
 
 // Limits of the shift between compared LF images, as a share of their longer side, and of the angle
 // between their rays to the middle of the scene.
@@ -42,7 +44,7 @@ constexpr double kLargeAngle_deg = 8, kMostAngle_deg = 15, kMostAngleOfFilm_deg 
 double ShiftOf(const LightField& light_field, const DensifyPlan& plan, int divisor,
                size_t most = SIZE_MAX) {
   std::vector<double> shifts;
-  for (uint32_t i = 0; i < plan.compare_with.size(); ++i) {
+  for (const uint32_t i : plan.used) {
     const PinholeCamera camera = WorkingCamera(light_field.Camera(LfImageId{i}), divisor);
     std::vector<double> of_camera;
     for (const uint32_t other : plan.compare_with[i])
@@ -182,7 +184,9 @@ Result<void> FillCapture(const LightField& light_field, const DensifyChoices& ch
 // Puts virtual LF cameras into the lenses of the film.
 void FillLenses(const LightField& light_field, const DensifyChoices& choices,
                 const FilmLenses& lenses, double wanted_w, ThreadPool& pool, DensifyPlan* plan) {
-  const double outside_w = kOutside * MedianSpacing(light_field);
+  LightField used = light_field;
+  KeepImages(std::vector<size_t>(plan->used.begin(), plan->used.end()), &used);
+  const double outside_w = kOutside * MedianSpacing(used);
   ChooseDistance(
       std::max(wanted_w, std::sqrt(lenses.Area_w2() / kMostPlaces)), choices.most_virtual,
       [&](double distance_w) -> std::optional<size_t> {
@@ -249,10 +253,14 @@ void FindSources(DensifyPlan* plan) {
   for (const VirtualCamera& camera : plan->virtual_cameras)
     for (const WeightedPoint& source : camera.sources) sources.insert(source.index);
   plan->sources.assign(sources.begin(), sources.end());
+  plan->stored.clear();
+  std::set_union(plan->sources.begin(), plan->sources.end(), plan->shown.begin(), plan->shown.end(),
+                 std::back_inserter(plan->stored));
   // Depths are compared with those of neighbours twice. A film's second comparison does with the
   // neighbours that were compared once.
   std::set<uint32_t> swept = WithCompared(sources, *plan);
   if (!plan->is_film) swept = WithCompared(swept, *plan);
+  swept.insert(plan->shown.begin(), plan->shown.end());
   plan->swept.assign(swept.begin(), swept.end());
 }
 
@@ -302,7 +310,9 @@ Result<DensifyPlan> PlanDensify(const LightField& light_field, const LfImageStor
   plan.is_film = !choices.frames.empty();
   plan.divisor = choices.divisor;
   plan.subject = AxesMeetingPoint(light_field);
-  plan.compare_with = CompareWith(light_field, plan.subject);
+  // Without a film, the lenses in which LF images are shown are unknown.
+  plan.used = FarEnoughApart(light_field, plan.is_film ? plan.subject : std::nullopt);
+  plan.compare_with = CompareWith(light_field, plan.used, plan.subject);
   if (std::all_of(plan.compare_with.begin(), plan.compare_with.end(),
                   [](const auto& others) { return others.empty(); }))
     return InputError(fmt::format(
@@ -310,13 +320,8 @@ Result<DensifyPlan> PlanDensify(const LightField& light_field, const LfImageStor
         "at several places",
         light_field.size()));
   std::optional<FilmLenses> lenses;
-  if (choices.frames.empty()) {
-    plan.serving.resize(light_field.size());
-    std::iota(plan.serving.begin(), plan.serving.end(), 0U);
-  } else {
-    lenses.emplace(light_field, choices.frames);
-    plan.serving = lenses->Serving();
-  }
+  if (plan.is_film) lenses.emplace(light_field, plan.used, choices.frames);
+  plan.serving = lenses ? lenses->Serving() : plan.used;
   if (choices.depths) {
     plan.range = {1 / choices.depths->far_w, 1 / choices.depths->near_w};
   } else {
@@ -329,6 +334,7 @@ Result<DensifyPlan> PlanDensify(const LightField& light_field, const LfImageStor
   plan.planes = PlanesFor(plan.ShiftPx());
   plan.tolerance = ToleranceFor(plan.range, plan.planes, plan.shift_per_depth_px);
   LF_RETURN_IF_ERROR(ChooseVirtual(light_field, choices, lenses ? &*lenses : nullptr, pool, &plan));
+  if (lenses) plan.shown = lenses->Recorded(plan.distance_w);
   FindSources(&plan);
   return plan;
 }

@@ -39,10 +39,13 @@ struct DensifyChoices {
 };
 
 struct DensifyPlan {
-  std::optional<Vec3> subject;                      // AxesMeetingPoint() of the light field
+  std::optional<Vec3> subject;  // AxesMeetingPoint() of the light field
+  // LF cameras with which others are compared, and of which virtual ones are made, ascending:
+  // FarEnoughApart() for a film, or all.
+  std::vector<uint32_t> used;
   std::vector<std::vector<uint32_t>> compare_with;  // CompareWith() of the LF cameras
-  // LF cameras of which virtual ones may be made, ascending: FilmLenses::Serving(), or all if there
-  // are no frames. Their poses are checked.
+  // LF cameras among `used` of which virtual ones may be made, ascending: FilmLenses::Serving(), or
+  // all if there are no frames. Their poses are checked.
   std::vector<uint32_t> serving;
   InverseDepths range;
   bool is_film = false;           // true: there are frames
@@ -58,8 +61,11 @@ struct DensifyPlan {
   // Least radius up to which a lens of the film is filled with virtual LF cameras; infinity if all
   // lenses are filled, or if there are no frames.
   double filled_radius_w = INFINITY;
+  // LF images in the lenses of the film, ascending: their depths tell the guard what is in focus.
+  std::vector<uint32_t> shown;
+  std::vector<uint32_t> sources;  // LF images that virtual ones are made of, ascending
+  std::vector<uint32_t> stored;   // LF images whose depths the store has, ascending: both of these
   std::vector<uint32_t> swept;    // LF images whose depths are searched, ascending
-  std::vector<uint32_t> sources;  // those that virtual LF images are made of, ascending
 
   // Shift, in pixels of working images, of the nearest points of the scene against the farthest
   // between LF images that are compared.

@@ -75,7 +75,7 @@ void DensifyWork::Plan(const LightField& light_field, const DensifyChoices& choi
              (kLoading + reduced * planes * static_cast<double>(plan.compare_with[id].size()));
     compared += of_image * reduced * kAgreeing;
   }
-  for (const uint32_t id : plan.sources) stored += PixelsOf(light_field, id) * reduced * kEncoding;
+  for (const uint32_t id : plan.stored) stored += PixelsOf(light_field, id) * reduced * kEncoding;
   for (const VirtualCamera& wanted : plan.virtual_cameras)
     made +=
         static_cast<double>(wanted.camera.intrinsics.width_px) * wanted.camera.intrinsics.height_px;

@@ -109,8 +109,8 @@ Result<void> DepthPlanes::MakeAgree(const Loop& loop) {
 }
 
 Result<void> DepthPlanes::Store(const Loop& loop) const {
-  return loop(DensifyStep::kStoring, plan_.sources.size(), [&](size_t i) -> Result<void> {
-    const LfImageId id{plan_.sources[i]};
+  return loop(DensifyStep::kStoring, plan_.stored.size(), [&](size_t i) -> Result<void> {
+    const LfImageId id{plan_.stored[i]};
     if (writer_.HasPlane(id, PlaneKind::kDisparity)) return {};
     const DepthPlane recorded = AsRecorded(planes_[id.value], light_field_.Camera(id).intrinsics,
                                            plan_.divisor, interrupted_);

@@ -47,7 +47,7 @@ class DepthPlanes {
   size_t MissingCount() const;
   // Replaces depths on which neighbours do not agree, twice.
   Result<void> MakeAgree(const Loop& loop);
-  // Stores the planes of plan.sources.
+  // Stores the planes of plan.stored.
   Result<void> Store(const Loop& loop) const;
 
   // Returns the plane of the working image of an LF image of plan.swept.

@@ -25,8 +25,9 @@ std::string InWords(std::span<const std::vector<uint32_t>> compare_with) {
 std::string InWords(const DensifyPlan& plan) {
   std::string text = fmt::format("{} {} {} {} {}", plan.range.least, plan.range.greatest,
                                  plan.planes, plan.divisor, plan.shift_per_depth_px);
-  text += fmt::format("; {} {}; {}; {}", plan.is_film, IsWidened(plan),
-                      fmt::join(plan.serving, " "), fmt::join(plan.sources, " "));
+  text +=
+      fmt::format("; {} {}; {}; {}; {}", plan.is_film, IsWidened(plan), fmt::join(plan.used, " "),
+                  fmt::join(plan.serving, " "), fmt::join(plan.sources, " "));
   return text + InWords(plan.compare_with);
 }
 

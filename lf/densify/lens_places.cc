@@ -98,7 +98,8 @@ std::vector<FilmSection> SectionsOf(std::span<const RenderCamera> frames) {
   return sections;
 }
 
-FilmLenses::FilmLenses(const LightField& light_field, std::span<const RenderCamera> frames)
+FilmLenses::FilmLenses(const LightField& light_field, std::span<const uint32_t> used,
+                       std::span<const RenderCamera> frames)
     : light_field_(light_field),
       frames_(frames),
       sections_(SectionsOf(frames)),
@@ -106,7 +107,8 @@ FilmLenses::FilmLenses(const LightField& light_field, std::span<const RenderCame
   for (const RenderCamera& frame : frames) centres_world_.push_back(frame.pinhole.CentreWorld());
   for (size_t s = 0; s < sections_.size(); ++s) {
     for (const size_t f : sections_[s].frames) section_of_frame_[f] = s;
-    charts_.push_back(ChartAround(light_field, sections_[s].camera, sections_[s].inverse_focus));
+    charts_.push_back(
+        ChartAround(light_field, used, sections_[s].camera, sections_[s].inverse_focus));
   }
 }
 
@@ -121,6 +123,19 @@ std::vector<uint32_t> FilmLenses::Serving() const {
       serving.insert(charts_[s].ids[order[k]]);
   }
   return {serving.begin(), serving.end()};
+}
+
+std::vector<uint32_t> FilmLenses::Recorded(double distance) const {
+  std::vector<uint32_t> ids;
+  for (uint32_t id = 0; id < light_field_.size(); ++id) {
+    const Vec3 centre_world = light_field_.Camera(LfImageId{id}).CentreWorld();
+    for (size_t f = 0; f < frames_.size(); ++f) {
+      if ((centre_world - centres_world_[f]).norm() > LensRadius(frames_[f]) + distance) continue;
+      ids.push_back(id);
+      break;
+    }
+  }
+  return ids;
 }
 
 size_t FilmLenses::NearestFrame(const Vec3& point_world) const {
@@ -183,9 +198,9 @@ LensPlaces FilmLenses::Places(double distance, double outside) const {
       const Vec3 centre_world = world_from_plane * Vec3(place->place.x(), place->place.y(), 0);
       // Each place belongs to one section, also at the border between two.
       if (section_of_frame_[NearestFrame(centre_world)] != s) continue;
-      const bool is_recorded = std::any_of(chart.ids.begin(), chart.ids.end(), [&](uint32_t id) {
-        return (recorded_world[id] - centre_world).norm() < distance / 2;
-      });
+      const bool is_recorded = std::any_of(
+          recorded_world.begin(), recorded_world.end(),
+          [&](const Vec3& recorded) { return (recorded - centre_world).norm() < distance / 2; });
       if (!is_recorded) result.places.push_back({s, centre_world, *std::move(place)});
     }
   }

@@ -48,12 +48,17 @@ struct LensPlaces {
 class FilmLenses {
  public:
   // The light field and the frames must outlive this object.
-  FilmLenses(const LightField& light_field, std::span<const RenderCamera> frames);
+  //   used  LF cameras of which virtual ones may be made, ascending
+  FilmLenses(const LightField& light_field, std::span<const uint32_t> used,
+             std::span<const RenderCamera> frames);
 
   // Returns the LF cameras of which virtual ones in the lenses are made: for each frame, those that
   // its section's chart shows nearest to its lens, at most kServing; ascending.
   static constexpr size_t kServing = 24;
   std::vector<uint32_t> Serving() const;
+
+  // Returns the LF cameras in a lens or as far as `distance` beside one, ascending.
+  std::vector<uint32_t> Recorded(double distance) const;
 
   // Returns the area of all lenses, in which lenses that overlap count once only if they are equal.
   double Area_w2() const;

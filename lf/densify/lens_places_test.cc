@@ -57,11 +57,35 @@ TEST(SectionsOf, ACameraThatTurnsOrMovesAlongItsAxisHasSeveral) {
   EXPECT_EQ(SectionsOf(along).size(), 10u);
 }
 
+TEST(FilmLenses, RecordedOnesAreInALensOrBesideIt) {
+  const LightField field = Grid(1);  // at x = -3 ... 3
+  const std::vector<RenderCamera> frames = {Frame(0.3, 0.4), Frame(2.5, 0.2)};
+  const FilmLenses lenses(field, FarEnoughApart(field, {}), frames);
+  EXPECT_EQ(lenses.Recorded(0.1), (std::vector<uint32_t>{3}));
+  EXPECT_EQ(lenses.Recorded(0.31), (std::vector<uint32_t>{3, 4, 5, 6}));
+}
+
+TEST(FilmLenses, VirtualOnesAreMadeOfThoseThatAreUsed) {
+  const LightField field = Grid(5);
+  const std::vector<RenderCamera> frames = {Frame(0.3, 0.4)};
+  const std::vector<uint32_t> used = {7, 11, 13, 21, 25, 27, 33};
+  const FilmLenses lenses(field, used, frames);
+  EXPECT_EQ(lenses.Serving(), used);
+  const std::vector<LensPlace> places = lenses.Places(0.2, 0.5).places;
+  ASSERT_FALSE(places.empty());
+  const Vec3 recorded = field.Camera(LfImageId{17}).CentreWorld();  // not used, but in the lens
+  for (const LensPlace& place : places) {
+    EXPECT_GE((place.centre_world - recorded).norm(), 0.1);
+    for (const WeightedPoint& source : lenses.CameraAt(place, 0.2, 1).sources)
+      EXPECT_TRUE(std::binary_search(used.begin(), used.end(), source.index));
+  }
+}
+
 TEST(FilmLenses, LatticesFillTheLensesAndNothingElse) {
   const LightField field = Grid(5);
   const std::vector<RenderCamera> frames = {Frame(0.3, 0.4), Frame(1.2, 0.2)};
   constexpr double kDistance = 0.1;
-  const FilmLenses lenses(field, frames);
+  const FilmLenses lenses(field, FarEnoughApart(field, {}), frames);
   const LensPlaces found = lenses.Places(kDistance, 0.5);
   EXPECT_EQ(found.filled_radius_w, INFINITY);
   double farthest[2] = {};
@@ -89,7 +113,7 @@ TEST(FilmLenses, LatticesFillTheLensesAndNothingElse) {
 TEST(FilmLenses, BesideARowTheLensIsFilledAsFarAsAllowed) {
   const LightField field = Grid(1);
   const std::vector<RenderCamera> frames = {Frame(0, 0.8)};
-  const FilmLenses lenses(field, frames);
+  const FilmLenses lenses(field, FarEnoughApart(field, {}), frames);
   const LensPlaces found = lenses.Places(0.1, 0.5);
   EXPECT_NEAR(found.filled_radius_w, 0.55, 0.06);
   double highest = 0, farthest = 0;
@@ -120,7 +144,7 @@ TEST(DropBeyond, LeavesWhatIsBetweenLfCamerasAndSaysWhatIsFilled) {
 TEST(FilmLenses, ThePictureOfAPlaceHoldsThatOfTheFrame) {
   const LightField field = Grid(5);
   const std::vector<RenderCamera> frames = {Frame(0.3, 0.4, 3)};
-  const FilmLenses lenses(field, frames);
+  const FilmLenses lenses(field, FarEnoughApart(field, {}), frames);
   for (const LensPlace& place : lenses.Places(0.1, 0.5).places) {
     const VirtualCamera camera = lenses.CameraAt(place, 0.1, 1);
     EXPECT_NEAR((camera.camera.CentreWorld() - place.centre_world).norm(), 0, 1e-12);
@@ -144,7 +168,8 @@ TEST(FilmLenses, ThePictureOfAPlaceHoldsThatOfTheFrame) {
 TEST(FilmLenses, NearLfCamerasServe) {
   const LightField field = Grid(9);
   const std::vector<RenderCamera> frames = {Frame(0, 0.4)};
-  const std::vector<uint32_t> serving = FilmLenses(field, frames).Serving();
+  const std::vector<uint32_t> serving =
+      FilmLenses(field, FarEnoughApart(field, {}), frames).Serving();
   EXPECT_EQ(serving.size(), FilmLenses::kServing);
   for (const uint32_t id : serving) EXPECT_LE(field.Camera(LfImageId{id}).CentreWorld().norm(), 3);
 }

@@ -107,7 +107,7 @@ Others OthersAround(const LightField& light_field, const DensifyPlan& plan, uint
                     bool one_side) {
   const PinholeCamera camera = light_field.Camera(LfImageId{left_out});
   const CameraChart chart =
-      ChartAround(light_field, camera, InverseDistanceOf(camera, plan.subject));
+      ChartAround(light_field, plan.used, camera, InverseDistanceOf(camera, plan.subject));
   Vec2 towards = Vec2::Zero();
   for (size_t i = 0; i < chart.ids.size() && one_side; ++i)
     if (chart.ids[i] != left_out &&
