@@ -26,9 +26,11 @@ import subprocess
 import sys
 import tempfile
 
+import cv2
 import numpy as np
 
 import densify_captures as captures
+import drawn_captures as drawn
 import lens_weights
 import quality
 from lens_weights import decibels, text
@@ -36,6 +38,7 @@ from quality import results
 
 NO_GUARD = "--no-guard --mode collect --estimator auto --lens-weights auto"
 FEWER = ("--most", 600)  # keeps the time short
+TRUTH_SAMPLES = 400
 COLUMNS = ("recorded LF images", "virtual", "frame", "*R*", "*V*", "guarded")
 
 
@@ -146,27 +149,67 @@ def scenes(bench):
     return table
 
 
+def figures_of_tests(report):
+    """Returns (median PSNR of LF images that lfdensify left out and made, what they are better by than a mean)."""
+    tests = [test for test in report["tests"] if not test["beyond"]]
+    if not tests:
+        return "-", "-"
+    return (f"{np.median([test['virtual_psnr_db'] for test in tests]):.1f}",
+            f"{np.median([test['virtual_psnr_db'] - test['mean_psnr_db'] for test in tests]):.1f}")
+
+
 def around(bench):
-    """Photographs all around, and one frame at one of them; virtual LF cameras fill its lens alone."""
-    focus, diameter = 0.85, 0.04
-    table = lens_weights.Table("scene", "photographs", "degrees apart", "virtual", "*R*", "*V*", "guarded",
+    """Photographs around an object, and one frame between two of them; virtual LF cameras fill its lens alone."""
+    diameter = 0.04
+    table = lens_weights.Table("scene", "photographs", "degrees apart", "virtual", "lens, cm", *COLUMNS[3:],
                                "left out, dB", "better than a mean by")
-    for scene, count in (("still-life", 320), ("still-life", 142), ("still-life", 92), ("lights", 142)):
-        calibration = bench.folder / f"{scene}_{count}" / "transforms.json"
-        synth = [bench.programs / "lfsynth", scene, "-q", "--capture", "hemisphere", "--count", count, "-o"]
-        results.call([*synth, calibration.parent, "--size", "320x240"])
-        field = quality.read_field(calibration)
-        path = captures.camera_path(field, bench.folder / "path.yaml", round(0.3 * count), diameter, focus)
-        out = bench.folder / f"truth_{scene}_{count}"
-        results.call([*synth, out, "--calibration-only", "--truth", path, "--truth-samples", 400])
-        truth = lens_weights.linear_exr(next(out.rglob("frame_0001.exr")))
-        store, report = bench.densify(calibration, path, *FEWER)
-        decibels_of = [decibels(bench.renderer, truth, source, path, words)
-                       for source, words in ((calibration, ""), (store, NO_GUARD), (store, ""))]
-        tests = [test for test in report["tests"] if not test["beyond"]]
-        table.add(scene, count, f"{np.degrees(np.sqrt(2 * np.pi / count)):.0f}", report["virtual"],
-                  *map(text, decibels_of), f"{np.median([test['virtual_psnr_db'] for test in tests]):.1f}",
-                  f"{np.median([test['virtual_psnr_db'] - test['mean_psnr_db'] for test in tests]):.1f}")
+    for scene in ("still-life", "chart"):
+        for name, cameras in (("dome", drawn.dome), ("track", drawn.track)):
+            for degrees in (4, 8, 12, 15):
+                folder = bench.folder / f"{scene}_{name}_{degrees}"
+                directions = cameras(degrees)
+                calibration = drawn.photographs(bench.programs, scene, directions, folder)
+                middle = len(directions) // 2
+                between = np.mean([directions[middle], directions[middle + 1]], axis=0)
+                path = drawn.film(folder / "path.yaml", between, between, 1, diameter)
+                truth = lens_weights.linear_exr(
+                    drawn.true_pictures(bench.programs, scene, path, folder / "true", TRUTH_SAMPLES)[0])
+                store, report = bench.densify(calibration, path, *FEWER)
+                found = [decibels(bench.renderer, truth, source, path, words) if source else (None, 0)
+                         for source, words in ((calibration, ""), (store, NO_GUARD), (store, ""))]
+                more = ((report["virtual"], f"{100 * min(report['filled_diameter_w'] or diameter, diameter):.1f}",
+                         *map(text, found), *figures_of_tests(report))
+                        if store else ("refused", "-", *map(text, found), "-", "-"))
+                table.add(scene, f"{len(directions)}, {name}", degrees, *more)
+    return table
+
+
+def turntables(bench):
+    """Photographs in a circle around cut-out objects, and one frame between two of them."""
+    green = np.array([0, 1, 0])
+    table = lens_weights.Table("scene", "photographs", "degrees apart", "virtual", *COLUMNS[3:],
+                               *(f"{column} near outlines" for column in COLUMNS[3:]),
+                               *(f"{column}, opacity" for column in COLUMNS[3:]))
+    for scene in ("still-life", "chart"):
+        for count in (72, 36, 24):
+            folder = bench.folder / f"{scene}_{count}"
+            calibration = drawn.photographs(bench.programs, scene, drawn.turntable(count), folder, alpha=True)
+            path = drawn.film(folder / "path.yaml", *2 * [np.array((180 / count, 25))], 1, 0.04)
+            truth = drawn.linear(
+                drawn.true_pictures(bench.programs, scene, path, folder / "true", TRUTH_SAMPLES, "straight")[0])
+            over_green = lambda picture: picture[..., :3] + (1 - picture[..., 3:4]) * green
+            outline = (truth[..., 3] > 0) & (truth[..., 3] < 1)
+            near = cv2.dilate(outline.astype(np.uint8), np.ones((7, 7), np.uint8)) > 0
+            store, report = bench.densify(calibration, path, *FEWER)
+            found = []
+            for source, words in ((calibration, ""), (store, NO_GUARD), (store, "")):
+                drawn.frames_of(bench.renderer, source, path, folder / "frames", words.split())
+                frame = drawn.linear(folder / "frames/frame_0001.exr")
+                pairs = over_green(truth), over_green(frame)
+                found.append([lens_weights.psnr(*pairs), lens_weights.psnr(pairs[0][near], pairs[1][near]),
+                              lens_weights.psnr(truth[..., 3], frame[..., 3])])
+            table.add(scene, count, f"{360 / count:g}", report["virtual"],
+                      *(f"{figures[i]:.2f}" for i in range(3) for figures in found))
     return table
 
 
