@@ -49,6 +49,10 @@ code 3.
 
 LF images that are missing or broken are left out, and the exit code is then 6.
 
+If LF images that stand at the same places contradict each other, because a reconstruction confused
+two sides, a film is made of the side on which its camera stands; a warning names those that are left
+out. The program refuses them if that is not clear, or without PATH.
+
 Until the store is complete its name is STORE.lfs.unfinished. Ctrl-C, kill -9 or a crash lose a few
 seconds of work; --resume continues.)",
 };

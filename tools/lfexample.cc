@@ -2,6 +2,7 @@
 // lfexample LIGHTFIELD -o PATH.yaml: writes a first camera path that is ready to render.
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -121,17 +122,19 @@ void WarnOfDoubt(const lf::ExamplePath& example, const std::string& light_field,
 
 // Says whether virtual LF images will help a film; if not, the reason. They are tested by leaving
 // LF images out.
+//   source  LIGHTFIELD and its options, as the user gave them
 lf::Result<std::string> WhyNotDensify(const lf::LightField& light_field, const lf::CameraPath& path,
-                                      lf::ThreadPool& pool) {
+                                      std::span<const std::string> source, lf::ThreadPool& pool) {
   lf::DensifyChoices choices;
   choices.frames.assign(path.AllInstants().begin(), path.AllInstants().end());
-  const lf::Result<lf::DensifyTrial> trial = lf::TryDensify(light_field, choices, pool);
+  const lf::Result<lf::DensifyTrial> trial = lf::TryDensify(light_field, choices, source, pool);
   if (!trial) {
     if (trial.error().kind != lf::ErrorKind::kInput && trial.error().kind != lf::ErrorKind::kUsage)
       return trial.error();
     return trial.error().message;
   }
   if (!trial->objection.empty()) return trial->objection;
+  if (!trial->left_out.empty()) lf::LogWarning("--densify: {}", trial->left_out);
   if (trial->tests.empty())
     lf::LogWarning(
         "it is not sure whether virtual LF images help, because no LF camera stands between "
@@ -148,6 +151,7 @@ lf::Result<std::string> WhyNotDensify(const lf::LightField& light_field, const l
 // makes the path for the recorded ones: options->densify is false then.
 lf::Result<lf::ExamplePath> MakePath(const lf::LightField& light_field,
                                      const lf::LfImageStore& store, const std::string& output,
+                                     std::span<const std::string> source,
                                      lf::ExampleOptions* options, lf::ThreadPool& pool) {
   LF_ASSIGN_OR_RETURN(lf::ExamplePath example,
                       lf::MakeExamplePath(light_field, store, *options, pool));
@@ -155,7 +159,7 @@ lf::Result<lf::ExamplePath> MakePath(const lf::LightField& light_field,
   LF_ASSIGN_OR_RETURN(const lf::CameraPath path,
                       lf::ParsePathYaml(example.yaml, output, light_field.unit_m));
   if (!options->densify || !example.doubt.empty()) return example;
-  LF_ASSIGN_OR_RETURN(const std::string why_not, WhyNotDensify(light_field, path, pool));
+  LF_ASSIGN_OR_RETURN(const std::string why_not, WhyNotDensify(light_field, path, source, pool));
   if (why_not.empty()) return example;
   lf::LogWarning(
       "--densify: virtual LF images do not help, so that the lens is chosen without "
@@ -238,8 +242,10 @@ int main(int argc, char** argv) {
                         lf::FindDisagreement(light_field, input, pool));
     if (!disagreement.text.empty()) options.doubt = "images and poses do not agree";
     LF_ASSIGN_OR_RETURN(options.camera, FindCamera(light_field, *store, camera));
+    std::vector<std::string> source = input.Words();
+    source.insert(source.begin(), lf::FileArgument(input.path));
     LF_ASSIGN_OR_RETURN(const lf::ExamplePath example,
-                        MakePath(light_field, *store, output, &options, pool));
+                        MakePath(light_field, *store, output, source, &options, pool));
     if (!overwrite) LF_RETURN_IF_ERROR(CheckKeepsEdits(output));
     LF_RETURN_IF_ERROR(lf::WriteFileAtomically(output, Stamped(example.yaml)));
     if (!disagreement.text.empty())

@@ -90,6 +90,9 @@ class Densifier {
   Result<void> CheckTarget() const;
   Result<void> FindWhole();
   Result<void> LeaveOutBroken();
+  // Leaves out all other LF images.
+  Result<void> Keep(std::span<const size_t> kept);
+  Result<void> MakePlan();
   Result<void> CheckPoses();
   Result<void> Test();
   Result<void> TestBeyond();
@@ -214,40 +217,77 @@ Result<void> Densifier::LeaveOutBroken() {
     return Result<void>();
   }));
   std::vector<size_t> kept;
-  std::vector<uint32_t> whole_ids;
   for (size_t i = 0; i < reasons.size(); ++i) {
-    if (reasons[i].empty()) {
+    if (reasons[i].empty())
       kept.push_back(i);
-      whole_ids.push_back(whole_ids_[i]);
-    } else {
+    else
       report_.skipped.push_back({light_field_.image_names[i], reasons[i]});
-    }
   }
   if (kept.size() == light_field_.size()) return {};
   if (kept.empty())
     return InputError(fmt::format("none of the {} LF images can be read; the first: {}",
                                   light_field_.size(), report_.skipped.front().reason));
+  return Keep(kept);
+}
+
+Result<void> Densifier::Keep(std::span<const size_t> kept) {
+  std::vector<uint32_t> whole_ids;
+  for (const size_t i : kept) whole_ids.push_back(whole_ids_[i]);
   KeepImages(kept, &light_field_);
   whole_ids_ = std::move(whole_ids);
   LF_ASSIGN_OR_RETURN(store_, OpenStore(light_field_, Mosaics::kToRgb));
   return {};
 }
 
-// Looks for groups of LF images that contradict each other.
+// Makes the plan for the LF images that are used.
+Result<void> Densifier::MakePlan() {
+  LF_RETURN_IF_ERROR(CheckCount(light_field_));
+  keys_.emplace(light_field_, kDensifyVersion);
+  findings_.emplace(light_field_, *store_, *keys_, cache_, pool_);
+  images_ = std::make_unique<WorkingImages>(light_field_, *store_, options_.choices.divisor,
+                                            options_.memory_bytes);
+  LF_ASSIGN_OR_RETURN(
+      plan_, PlanDensify(light_field_, *store_, options_.choices, pool_,
+                         [this](std::span<const std::vector<uint32_t>> compare_with) {
+                           return findings_->Range(compare_with, WatchOf(DensifyStep::kRange));
+                         }));
+  work_.Plan(light_field_, options_.choices, plan_);
+  report_.dense = plan_.dense;
+  report_.recorded_count = light_field_.size();
+  report_.virtual_count = plan_.virtual_cameras.size();
+  report_.range = plan_.range;
+  report_.planes = plan_.planes;
+  report_.shift_px = plan_.ShiftPx();
+  report_.distance_w = plan_.distance_w;
+  report_.spacing_px = plan_.spacing_px;
+  return {};
+}
+
+// Looks for groups of LF images that contradict each other. A film is made of the group that
+// clearly stands in its lenses; the others are then left out.
 Result<void> Densifier::CheckPoses() {
-  // More would take minutes; so many are not reconstructed from photographs taken by hand.
-  constexpr size_t kMostChecked = 400;
   if (light_field_.size() > kMostChecked) return {};
-  LF_ASSIGN_OR_RETURN(const std::vector<ComparedPair> pairs,
-                      findings_->Pairs(plan_, WatchOf(DensifyStep::kPairs)));
-  const std::vector<std::vector<uint32_t>> groups = ContradictingGroups(light_field_.size(), pairs);
-  if (groups.empty()) return {};
   std::vector<std::string> source = {FileArgument(options_.source_name)};
   source.insert(source.end(), options_.source_options.begin(), options_.source_options.end());
-  std::string text = ContradictionText(light_field_, groups, source);
-  if (!options_.choices.force) return InputError(std::move(text));
-  LogWarning("{}", text);
-  return {};
+  std::span<const RenderCamera> frames = options_.choices.frames;
+  if (options_.choices.force) frames = {};  // nothing is left out
+  LF_ASSIGN_OR_RETURN(const Contradiction found,
+                      FindContradiction(light_field_, plan_.serving, frames, source,
+                                        [&](std::span<const uint32_t> ids) {
+                                          return findings_->Pairs(plan_, ids,
+                                                                  WatchOf(DensifyStep::kPairs));
+                                        }));
+  if (found.text.empty()) return {};
+  if (found.kept.empty() && !options_.choices.force) return InputError(found.text);
+  LogWarning("{}", found.text);
+  if (found.kept.empty()) return {};
+  for (uint32_t i = 0; i < light_field_.size(); ++i)
+    if (!std::binary_search(found.kept.begin(), found.kept.end(), i))
+      report_.left_out.push_back(light_field_.image_names[i]);
+  report_.kept_share = found.share;
+  LF_RETURN_IF_ERROR(Keep(found.kept));
+  LF_ASSIGN_OR_RETURN(recorded_, RecordedCodes::Open(light_field_));
+  return MakePlan();
 }
 
 Result<void> Densifier::Test() {
@@ -399,28 +439,10 @@ Result<DensifyReport> Densifier::Run() {
   LF_RETURN_IF_ERROR(FindWhole());
   LF_RETURN_IF_ERROR(LeaveOutBroken());
   LF_ASSIGN_OR_RETURN(recorded_, RecordedCodes::Open(light_field_));
-  LF_RETURN_IF_ERROR(CheckCount(light_field_));
-  keys_.emplace(light_field_, kDensifyVersion);
-  findings_.emplace(light_field_, *store_, *keys_, cache_, pool_);
-  images_ = std::make_unique<WorkingImages>(light_field_, *store_, options_.choices.divisor,
-                                            options_.memory_bytes);
-  LF_ASSIGN_OR_RETURN(
-      plan_, PlanDensify(light_field_, *store_, options_.choices, pool_,
-                         [this](std::span<const std::vector<uint32_t>> compare_with) {
-                           return findings_->Range(compare_with, WatchOf(DensifyStep::kRange));
-                         }));
-  work_.Plan(light_field_, options_.choices, plan_);
-  report_.dense = plan_.dense;
-  report_.recorded_count = light_field_.size();
-  report_.virtual_count = plan_.virtual_cameras.size();
-  report_.range = plan_.range;
-  report_.planes = plan_.planes;
-  report_.shift_px = plan_.ShiftPx();
-  report_.distance_w = plan_.distance_w;
-  report_.spacing_px = plan_.spacing_px;
+  LF_RETURN_IF_ERROR(MakePlan());
+  if (report_.dense.empty()) LF_RETURN_IF_ERROR(CheckPoses());
   if (!report_.dense.empty()) return std::move(report_);
   LogDebug("{}: {}", options_.store.string(), SettingsInWords(plan_, options_.choices));
-  LF_RETURN_IF_ERROR(CheckPoses());
   LF_RETURN_IF_ERROR(Test());
   report_.virtual_count = plan_.virtual_cameras.size();
   if (std::isfinite(plan_.filled_radius_w)) report_.filled_diameter_w = 2 * plan_.filled_radius_w;

@@ -69,7 +69,11 @@ struct DensifyReport {
   std::vector<Skipped> skipped;  // LF images that are not used because they cannot be read
   size_t recorded_count = 0;     // those that are used
   size_t virtual_count = 0;
-  size_t asked_count() const { return recorded_count + skipped.size(); }
+  // Names of LF images that are not used because their poses are wrong: they contradict those in
+  // the lenses of the film (GroupOfFilm()), whose share of the nearness to the lenses is also told.
+  std::vector<std::string> left_out;
+  double kept_share = 1;
+  size_t asked_count() const { return recorded_count + skipped.size() + left_out.size(); }
   InverseDepths range;
   int planes = 0;         // number of inverse depths that were compared
   double shift_px = 0;    // DensifyPlan::ShiftPx()
@@ -93,10 +97,11 @@ struct DensifyReport {
 // dense enough already (DensifyReport::dense). If alpha is light, virtual LF images have opacities,
 // whatever the background is, and the store records the alpha and the background of the light
 // field. kInput: the light field cannot be densified
-// (PlanDensify()), has brackets, or fails its test (TestByLeavingOut()) unless choices.force is
-// set; or an LF image cannot be read and `strict` is set, or fewer than three can. kUsage, kOutput
-// as PackedStoreWriter; the store exists and no option says what to do with it. kInterrupted:
-// finished work is kept.
+// (PlanDensify()), has brackets, has groups of LF images that contradict each other, none of which
+// clearly stands in the lenses of a film (FindContradiction()), or fails its test
+// (TestByLeavingOut()) unless choices.force is set; or an LF image cannot be read and `strict` is
+// set, or fewer than three can. kUsage, kOutput as PackedStoreWriter; the store exists and no
+// option says what to do with it. kInterrupted: finished work is kept.
 Result<DensifyReport> Densify(const LightField& light_field, const DensifyOptions& options,
                               ThreadPool& pool,
                               const std::function<void(const DensifyProgress&)>& progress);

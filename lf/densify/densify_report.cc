@@ -38,6 +38,11 @@ std::string DensifyText(const DensifyReport& report, const DensifyOptions& optio
         *report.filled_diameter_w);
   for (const DensifyReport::Skipped& skipped : report.skipped)
     text += fmt::format("skipped   {}: {}\n", skipped.name, Spelled(skipped.reason));
+  if (!report.left_out.empty())
+    text += fmt::format(
+        "left out  {} LF images, whose poses are wrong; those that are used have {:.0f} % of the\n"
+        "          nearness to the lenses: {}\n",
+        report.left_out.size(), 100 * report.kept_share, fmt::join(report.left_out, ", "));
   if (report.was_there) return text + "existed already: nothing was written\n" + next;
   if (report.spacing_px > options.choices.spacing_px * 1.001)
     text +=
@@ -97,6 +102,8 @@ std::string DensifyJson(const DensifyReport& report, const DensifyOptions& optio
       {"agreeing_share", report.agreeing_share},
       {"weak_share", report.weak_share},
       {"skipped", skipped},
+      {"left_out", report.left_out},
+      {"kept_share", report.kept_share},
       {"tests", tests},
       {"cache", options.cache.empty() ? nlohmann::ordered_json()
                                       : nlohmann::ordered_json(options.cache.string())},

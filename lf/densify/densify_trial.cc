@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "lf/core/check.h"
+#include "lf/densify/folded_poses.h"
 #include "lf/densify/working_image.h"
+#include "lf/light_field/model/keep_images.h"
 #include "lf/storage/load/open_store.h"
 
 namespace lf {
@@ -39,20 +41,48 @@ std::string ObjectionOf(const std::vector<LeftOut>& tests, const InverseDepths& 
       tests.size(), psnr_db, gain_db, kLeastGainDb, worst->name, worst->GainDb(), reason);
 }
 
-Result<DensifyTrial> TryDensify(const LightField& light_field, const DensifyChoices& choices,
-                                ThreadPool& pool) {
-  LF_CHECK(!choices.frames.empty());
-  LF_RETURN_IF_ERROR(CheckKind(light_field));
+namespace {
+
+// Tests a film. Finds LF images that contradict each other if the test fails.
+Result<DensifyTrial> Try(const LightField& light_field, const DensifyChoices& choices,
+                         std::span<const std::string> source, ThreadPool& pool,
+                         Contradiction* contradiction) {
+  LF_ASSIGN_OR_RETURN(const auto store, OpenStore(light_field, Mosaics::kToRgb));
+  LF_ASSIGN_OR_RETURN(const DensifyPlan plan, PlanDensify(light_field, *store, choices, pool));
   DensifyTrial trial;
-  const LightField field = WithOpacities(light_field);
-  LF_ASSIGN_OR_RETURN(const auto store, OpenStore(field, Mosaics::kToRgb));
-  LF_ASSIGN_OR_RETURN(const DensifyPlan plan, PlanDensify(field, *store, choices, pool));
   trial.filled_radius_w = plan.filled_radius_w;
   trial.objection = plan.dense;
   if (!trial.objection.empty()) return trial;
-  LF_ASSIGN_OR_RETURN(trial.tests, TestByLeavingOut(field, *store, plan, pool));
+  LF_ASSIGN_OR_RETURN(trial.tests, TestByLeavingOut(light_field, *store, plan, pool));
   trial.objection = ObjectionOf(TestsOf(trial.tests, false), plan.range, true);
+  if (trial.objection.empty() || light_field.size() > kMostChecked) return trial;
+  LF_ASSIGN_OR_RETURN(*contradiction, FindContradiction(light_field, plan.serving, choices.frames,
+                                                        source, [&](std::span<const uint32_t> ids) {
+                                                          return ComparePairs(light_field, *store,
+                                                                              ids, plan.range,
+                                                                              pool);
+                                                        }));
   return trial;
+}
+
+}  // namespace
+
+Result<DensifyTrial> TryDensify(const LightField& light_field, const DensifyChoices& choices,
+                                std::span<const std::string> source, ThreadPool& pool) {
+  LF_CHECK(!choices.frames.empty());
+  LF_RETURN_IF_ERROR(CheckKind(light_field));
+  LightField field = WithOpacities(light_field);
+  Contradiction found;
+  LF_ASSIGN_OR_RETURN(DensifyTrial trial, Try(field, choices, source, pool, &found));
+  if (found.kept.empty()) {
+    if (!found.text.empty()) trial.objection = found.text;
+    return trial;
+  }
+  KeepImages(found.kept, &field);
+  Contradiction further;
+  LF_ASSIGN_OR_RETURN(DensifyTrial of_group, Try(field, choices, source, pool, &further));
+  of_group.left_out = found.text;
+  return of_group;
 }
 
 }  // namespace lf

@@ -3,6 +3,7 @@
 // before any is made.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,14 +25,20 @@ struct DensifyTrial {
   // The reason why virtual LF images do not help: the LF cameras are dense enough already, or the
   // test failed. Empty if they help, or if no LF image could be tested.
   std::string objection;
+  // Says which LF images the film cannot use because their poses are wrong (FindContradiction());
+  // the other fields are of those that are left. Empty if it can use all.
+  std::string left_out;
   std::vector<LeftOut> tests;  // TestByLeavingOut(); empty if no LF image could be tested
   double filled_radius_w = 0;  // DensifyPlan::filled_radius_w
 };
 
-// Makes the plan for a film and tests it, at a fraction of the cost of Densify().
+// Makes the plan for a film and tests it, at a fraction of the cost of Densify(). If the test
+// fails, looks for LF images that contradict each other, and tests the film with those of its own
+// group.
 //   choices  with frames
+//   source   LIGHTFIELD and its options, as the user gave them, for the commands of messages
 // Errors as CheckKind(), OpenStore(), PlanDensify() and TestByLeavingOut().
 Result<DensifyTrial> TryDensify(const LightField& light_field, const DensifyChoices& choices,
-                                ThreadPool& pool);
+                                std::span<const std::string> source, ThreadPool& pool);
 
 }  // namespace lf

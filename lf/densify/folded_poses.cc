@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -16,6 +17,8 @@
 
 #include "lf/core/median.h"
 #include "lf/core/shell_word.h"
+#include "lf/densify/camera_chart.h"
+#include "lf/densify/natural_neighbours.h"
 #include "lf/densify/semi_global.h"
 #include "lf/densify/working_images.h"
 
@@ -93,6 +96,8 @@ class Groups {
   std::vector<uint32_t> parents_;
 };
 
+constexpr double kAgrees = 0.4, kDisagrees = 0.2;  // of the usual best share
+
 double UsualBest(size_t count, std::span<const ComparedPair> pairs) {
   std::vector<double> best(count, -1);
   for (const ComparedPair& pair : pairs)
@@ -114,6 +119,26 @@ std::string PatternOf(std::string name) {
   return name;
 }
 
+// Returns the groups with all LF images that are joined to them by pairs that agree; nullopt if two
+// groups are then joined.
+std::optional<std::vector<std::vector<uint32_t>>> Grown(
+    size_t count, std::span<const std::vector<uint32_t>> groups,
+    std::span<const ComparedPair> pairs) {
+  const double usual = UsualBest(count, pairs);
+  Groups joined(count);
+  for (const ComparedPair& pair : pairs)
+    if (pair.agreeing_share >= kAgrees * usual) joined.Join(pair.first, pair.second);
+  std::map<uint32_t, size_t> group_of_root;
+  for (size_t g = 0; g < groups.size(); ++g)
+    for (const uint32_t id : groups[g])
+      if (group_of_root.try_emplace(joined.RootOf(id), g).first->second != g) return std::nullopt;
+  std::vector<std::vector<uint32_t>> grown(groups.size());
+  for (uint32_t id = 0; id < count; ++id)
+    if (const auto group = group_of_root.find(joined.RootOf(id)); group != group_of_root.end())
+      grown[group->second].push_back(id);
+  return grown;
+}
+
 // Returns names with runs of LF images abbreviated: "a.jpg to c.jpg, f.jpg".
 std::string RunsText(const LightField& light_field, std::span<const uint32_t> ids) {
   std::string text;
@@ -125,6 +150,20 @@ std::string RunsText(const LightField& light_field, std::span<const uint32_t> id
     i = last + 1;
   }
   return text;
+}
+
+// Returns the command that writes a light field of one group.
+//   number  of the group, from 0
+std::string GroupCommand(const LightField& light_field, const std::vector<uint32_t>& group,
+                         size_t number, std::span<const std::string> source) {
+  std::string excluded;
+  for (uint32_t id = 0; id < light_field.image_names.size(); ++id)
+    if (!std::binary_search(group.begin(), group.end(), id))
+      excluded += (excluded.empty() ? "" : ",") + PatternOf(NameOf(light_field, id));
+  std::vector<std::string> words = {"lfimport"};
+  words.insert(words.end(), source.begin(), source.end());
+  words.insert(words.end(), {"-o", fmt::format("group_{}", number + 1), "--exclude", excluded});
+  return ShellCommand(words);
 }
 
 }  // namespace
@@ -169,26 +208,29 @@ Result<std::vector<ComparedPair>> ComparePairs(const LightField& light_field,
 
 std::vector<std::vector<uint32_t>> ContradictingGroups(size_t count,
                                                        std::span<const ComparedPair> pairs) {
-  constexpr double kAgrees = 0.4, kDisagrees = 0.2;  // of the usual best share
   constexpr double kLeastSize = 0.1, kInterleaved = 0.25;
+  constexpr size_t kLeastImages = 3, kLeastInterleaved = 2;
   constexpr double kLeastUsual = 0.15;
   if (pairs.empty()) return {};
   const double usual = UsualBest(count, pairs);
   if (usual < kLeastUsual) return {};
   Groups joined(count);
   std::vector<double> distances;
-  for (const ComparedPair& pair : pairs)
+  std::set<uint32_t> compared;
+  for (const ComparedPair& pair : pairs) {
+    compared.insert({pair.first, pair.second});
     if (pair.agreeing_share >= kAgrees * usual) {
       joined.Join(pair.first, pair.second);
       distances.push_back(pair.distance);
     }
+  }
   if (distances.empty()) return {};
   const double near = Median(std::move(distances));
 
   std::vector<std::vector<uint32_t>> groups(count);
   for (uint32_t i = 0; i < count; ++i) groups[joined.RootOf(i)].push_back(i);
-  const auto least_size =
-      std::max<size_t>(3, static_cast<size_t>(std::ceil(kLeastSize * static_cast<double>(count))));
+  const auto share = kLeastSize * static_cast<double>(compared.size());
+  const size_t least_size = std::max(kLeastImages, static_cast<size_t>(std::ceil(share)));
   std::erase_if(groups, [&](const auto& group) { return group.size() < least_size; });
   std::stable_sort(groups.begin(), groups.end(),
                    [](const auto& a, const auto& b) { return a.size() > b.size(); });
@@ -204,13 +246,67 @@ std::vector<std::vector<uint32_t>> ContradictingGroups(size_t count,
             joined.RootOf(there) == joined.RootOf(larger[0]))
           disagreeing.insert(here);
     }
-    return static_cast<double>(disagreeing.size()) >=
-           kInterleaved * static_cast<double>(smaller.size());
+    return disagreeing.size() >= kLeastInterleaved &&
+           static_cast<double>(disagreeing.size()) >=
+               kInterleaved * static_cast<double>(smaller.size());
   };
   for (size_t i = 0; i < groups.size(); ++i)
     for (size_t j = i + 1; j < groups.size(); ++j)
       if (contradicts(groups[i], groups[j])) return groups;
   return {};
+}
+
+std::optional<FilmGroup> GroupOfFilm(const LightField& light_field,
+                                     std::span<const std::vector<uint32_t>> groups,
+                                     std::span<const RenderCamera> frames) {
+  constexpr size_t kAsked = 8;
+  constexpr double kMiddle = 1.0 / 8;  // of the distance of the farthest that is asked
+  constexpr double kLeastMean = 2.0 / 3, kLeastOfFrame = 0.5;
+  std::vector<double> sums(groups.size(), 0), least(groups.size(), 1);
+  for (const RenderCamera& frame : frames) {
+    const CameraChart chart = ChartAround(light_field, frame.pinhole, 1 / frame.focus_distance_w);
+    std::vector<uint32_t> near = ByDistance(chart.points, Vec2::Zero());
+    near.resize(std::min(kAsked, near.size()));
+    const double middle = near.empty() ? 0 : kMiddle * chart.points[near.back()].norm();
+    if (middle == 0) return std::nullopt;
+    std::vector<double> nearness(groups.size(), 0);
+    double all = 0;
+    for (const uint32_t at : near) {
+      const double one = 1 / (chart.points[at].squaredNorm() + middle * middle);
+      all += one;
+      for (size_t g = 0; g < groups.size(); ++g)
+        if (std::binary_search(groups[g].begin(), groups[g].end(), chart.ids[at]))
+          nearness[g] += one;
+    }
+    for (size_t g = 0; g < groups.size(); ++g) {
+      sums[g] += nearness[g] / all / static_cast<double>(frames.size());
+      least[g] = std::min(least[g], nearness[g] / all);
+    }
+  }
+  for (size_t g = 0; g < groups.size(); ++g)
+    if (sums[g] >= kLeastMean && least[g] >= kLeastOfFrame) return FilmGroup{g, sums[g]};
+  return std::nullopt;
+}
+
+std::string FilmGroupText(const LightField& light_field,
+                          std::span<const std::vector<uint32_t>> groups, const FilmGroup& chosen,
+                          std::span<const std::string> source) {
+  const std::vector<uint32_t>& kept = groups[chosen.number];
+  std::vector<uint32_t> left_out;
+  for (uint32_t id = 0; id < light_field.size(); ++id)
+    if (!std::binary_search(kept.begin(), kept.end(), id)) left_out.push_back(id);
+  std::string others;
+  for (size_t i = 0; i < groups.size(); ++i)
+    if (i != chosen.number)
+      others += (others.empty() ? "" : "; ") + GroupCommand(light_field, groups[i], i, source);
+  return fmt::format(
+      "{} LF images are left out ({}), because their poses are wrong: they do not agree with the "
+      "LF "
+      "images in the lenses of the film, although some of them stand as near, for example because "
+      "equal patterns on two sides were confused. The film is made of the other {} ({}), which "
+      "have {:.0f} % of the nearness to its lenses. To film what was left out instead: {}",
+      left_out.size(), RunsText(light_field, left_out), kept.size(), RunsText(light_field, kept),
+      100 * chosen.share, others);
 }
 
 std::string ContradictionText(const LightField& light_field,
@@ -223,19 +319,41 @@ std::string ContradictionText(const LightField& light_field,
   for (size_t i = 0; i < groups.size(); ++i) {
     text += fmt::format("{} group {} has {} ({})", i == 0 ? ";" : ",", i + 1, groups[i].size(),
                         RunsText(light_field, groups[i]));
-    std::string excluded;
-    for (uint32_t id = 0; id < light_field.image_names.size(); ++id)
-      if (!std::binary_search(groups[i].begin(), groups[i].end(), id))
-        excluded += (excluded.empty() ? "" : ",") + PatternOf(NameOf(light_field, id));
-    std::vector<std::string> words = {"lfimport"};
-    words.insert(words.end(), source.begin(), source.end());
-    words.insert(words.end(), {"-o", fmt::format("group_{}", i + 1), "--exclude", excluded});
-    commands += (i == 0 ? ": " : "; ") + ShellCommand(words);
+    commands += (i == 0 ? ": " : "; ") + GroupCommand(light_field, groups[i], i, source);
   }
   return text +
          ". Poses are wrong, for example because equal patterns on two sides were confused, or "
          "exposures differ ({lfimport match_exposure}). Densify each group by itself" +
          commands;
+}
+
+Result<Contradiction> FindContradiction(const LightField& light_field,
+                                        std::span<const uint32_t> ids,
+                                        std::span<const RenderCamera> frames,
+                                        std::span<const std::string> source,
+                                        const PairSearch& search) {
+  const size_t count = light_field.size();
+  LF_ASSIGN_OR_RETURN(std::vector<ComparedPair> pairs, search(ids));
+  std::vector<std::vector<uint32_t>> groups = ContradictingGroups(count, pairs);
+  if (groups.empty()) return Contradiction{};
+  Contradiction found;
+  if (!frames.empty()) {
+    if (ids.size() < count) {
+      std::vector<uint32_t> all(count);
+      std::iota(all.begin(), all.end(), 0U);
+      LF_ASSIGN_OR_RETURN(const std::vector<ComparedPair> further, search(all));
+      pairs.insert(pairs.end(), further.begin(), further.end());
+      if (auto grown = Grown(count, groups, pairs)) groups = *std::move(grown);
+    }
+    if (const std::optional<FilmGroup> chosen = GroupOfFilm(light_field, groups, frames)) {
+      found.text = FilmGroupText(light_field, groups, *chosen, source);
+      found.kept.assign(groups[chosen->number].begin(), groups[chosen->number].end());
+      found.share = chosen->share;
+      return found;
+    }
+  }
+  found.text = ContradictionText(light_field, groups, source);
+  return found;
 }
 
 }  // namespace lf

@@ -49,8 +49,11 @@ Result<InverseDepths> KeptFindings::Range(std::span<const std::vector<uint32_t>>
   return range;
 }
 
-Result<std::vector<ComparedPair>> KeptFindings::Pairs(const DensifyPlan& plan, const Watch& watch) {
-  const DepthCache::Entry entry = keys_.OfAll("pairs", InWords(plan));
+Result<std::vector<ComparedPair>> KeptFindings::Pairs(const DensifyPlan& plan,
+                                                      std::span<const uint32_t> ids,
+                                                      const Watch& watch) {
+  const DepthCache::Entry entry =
+      keys_.OfAll("pairs", fmt::format("{}; {}", InWords(plan), fmt::join(ids, " ")));
   std::vector<ComparedPair> pairs;
   if (const auto kept = cache_.FindNumbers(entry)) {
     for (size_t i = 0; i + kOfPair <= kept->size(); i += kOfPair) {
@@ -59,8 +62,7 @@ Result<std::vector<ComparedPair>> KeptFindings::Pairs(const DensifyPlan& plan, c
     }
     return pairs;
   }
-  LF_ASSIGN_OR_RETURN(pairs,
-                      ComparePairs(light_field_, store_, plan.serving, plan.range, pool_, watch));
+  LF_ASSIGN_OR_RETURN(pairs, ComparePairs(light_field_, store_, ids, plan.range, pool_, watch));
   std::vector<double> numbers;
   for (const ComparedPair& pair : pairs)
     numbers.insert(numbers.end(),

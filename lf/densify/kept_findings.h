@@ -29,8 +29,9 @@ class KeptFindings {
   // Returns the result of FindInverseDepths().
   Result<InverseDepths> Range(std::span<const std::vector<uint32_t>> compare_with,
                               const Watch& watch);
-  // Returns the result of ComparePairs().
-  Result<std::vector<ComparedPair>> Pairs(const DensifyPlan& plan, const Watch& watch);
+  // Returns the result of ComparePairs() for some LF images.
+  Result<std::vector<ComparedPair>> Pairs(const DensifyPlan& plan, std::span<const uint32_t> ids,
+                                          const Watch& watch);
   // Returns the result of TestByLeavingOut().
   Result<std::vector<LeftOut>> Tests(const DensifyPlan& plan, const Watch& watch);
 

@@ -66,10 +66,10 @@ class DensifyTest(ProgramTestCase):
         text = json.loads((self.field / "transforms.json").read_text())
         return text, np.array([frame["transform_matrix"] for frame in text["frames"]])
 
-    def write_path(self, aperture=0.05, frames=1):
-        """Writes a path whose camera stands in the middle of the LF cameras."""
+    def write_path(self, aperture=0.05, frames=1, camera=None):
+        """Writes a path whose camera stands in the middle of the LF cameras, or at one of them."""
         _, poses = self.cameras()
-        position, axes = poses[:, :3, 3].mean(0), poses[0][:3, :3]
+        position, axes = poses[:, :3, 3].mean(0) if camera is None else poses[camera][:3, 3], poses[0][:3, :3]
         words = {name: "[" + ", ".join(repr(float(x)) for x in vector) + "]"
                  for name, vector in (("position", position), ("target", position - axes[:, 2]),
                                       ("up", axes[:, 1]))}
@@ -329,18 +329,40 @@ class DensifyTest(ProgramTestCase):
         self.fails(3, ["left out"], DENSIFY, self.field, "-o", self.store, "--depths", 0.35, 20)
         self.assertFalse(self.store.exists())
 
-    def test_two_sides_that_were_put_at_the_same_places_are_told_apart(self):
+    def fold(self):
+        """Makes half of the cameras see another side of the world."""
         self.synth("--format", "png")
         frames = self.cameras()[0]["frames"]
-        # Half of the cameras see the world turned upside down: what the opposite camera sees, turned.
+        # They see it turned upside down: what the opposite camera sees, turned.
         places = [(row, column) for row in range(4) for column in range(row % 2, 4, 2)]
         pictures = {place: cv2.imread(str(self.field / frames[15 - 4 * place[0] - place[1]]["file_path"]))
                     for place in places}
         for (row, column), picture in pictures.items():
             cv2.imwrite(str(self.field / frames[4 * row + column]["file_path"]), picture[::-1, ::-1])
+
+    def test_two_sides_that_were_put_at_the_same_places_are_told_apart(self):
+        self.fold()
         self.fails(3, ["contradict each other", "group 1 has 8", "group 2 has 8", "--exclude"],
                    DENSIFY, self.field, "-o", self.store, "--depths", 0.35, 20)
         self.assertFalse(self.store.exists())
+
+    def test_a_film_of_one_side_leaves_out_the_other(self):
+        self.fold()
+        frames = self.cameras()[0]["frames"]
+        for camera, is_even in ((5, True), (6, False)):
+            path = self.write_path(aperture=0.03, camera=camera)
+            result = self.call(DENSIFY, self.field, path, "-o", self.store, "--depths", 0.35, 20, "--json",
+                               "--overwrite", "--most", 30, "--cache", "none")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            report = json.loads(result.stdout)
+            left_out = [frame["file_path"] for i, frame in enumerate(frames) if (i + i // 4) % 2 == is_even]
+            self.assertEqual(report["left_out"], left_out)
+            self.assertEqual(report["recorded"], 8)
+            self.assertGreater(report["kept_share"], 2 / 3)
+            self.assertIn("8 LF images are left out", result.stderr)
+            self.assertIn(f"lfimport {self.field} -o group_", result.stderr)
+        self.fails(3, ["contradict each other", "group 1 has 8", "group 2 has 8"],
+                   DENSIFY, self.field, self.write_path(), "-o", self.store, "--depths", 0.35, 20, "--overwrite")
 
     def test_cameras_on_a_line_are_refused(self):
         self.synth()
