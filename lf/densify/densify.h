@@ -3,7 +3,7 @@
 // all of them into a packed store.
 //
 //   1. The inverse depth of every pixel is found by comparing an LF image with its neighbours
-//      (depth_plane.h).
+//      (depth_sweep.h).
 //   2. Depths on which neighbours do not agree are replaced.
 //   3. Virtual LF images are made of the recorded ones around them (synthesis.h).
 //

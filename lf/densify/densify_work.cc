@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "lf/densify/depth_sweep.h"
+
 namespace lf {
 namespace {
 
@@ -71,8 +73,10 @@ void DensifyWork::Plan(const LightField& light_field, const DensifyChoices& choi
   double swept = 0, compared = 0, stored = 0, made = 0;
   for (const uint32_t id : plan.swept) {
     const double of_image = PixelsOf(light_field, id);
-    swept += of_image *
-             (kLoading + reduced * planes * static_cast<double>(plan.compare_with[id].size()));
+    const Intrinsics k = light_field.Camera(LfImageId{id}).intrinsics;
+    const double share = ComparedShare(k.width_px / choices.divisor, k.height_px / choices.divisor);
+    swept += of_image * (kLoading + reduced * share * planes *
+                                        static_cast<double>(plan.compare_with[id].size()));
     compared += of_image * reduced * kAgreeing;
   }
   for (const uint32_t id : plan.stored) stored += PixelsOf(light_field, id) * reduced * kEncoding;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The inverse depth of every pixel of an LF image, from the comparison with its neighbours.
+// The inverse depth of every pixel of an LF image, compared with those of its neighbours.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 #include "lf/core/image.h"
 #include "lf/densify/inverse_depths.h"
-#include "lf/densify/matching_costs.h"
+#include "lf/densify/pair_map.h"
 #include "lf/densify/watched_loop.h"
 #include "lf/densify/working_image.h"
 
@@ -15,14 +15,6 @@ namespace lf {
 
 // Numbers of InverseDepths, [height][width], for a working image.
 using DepthPlane = Image<uint16_t>;
-
-// Returns the plane that semi-global matching chooses, smoothed by a median of 3 x 3 pixels. Large
-// images are matched in tiles that overlap, so that the memory is bounded.
-//   views        one or more
-//   planes       number of inverse depths that are compared, 2 or more
-//   interrupted  once it is set, the result must not be used
-DepthPlane SweepDepths(const WorkingImage& reference, std::span<const SweepView> views,
-                       const InverseDepths& range, int planes, InterruptFlag interrupted = nullptr);
 
 // A neighbour of an LF image with its depth plane.
 struct DepthView {

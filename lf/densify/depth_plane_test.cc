@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "lf/densify/depth_sweep.h"
 #include "lf/densify/matching_row.h"
 #include "lf/densify/semi_global.h"
 #include "lf/densify/test_world.h"

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lf/core/parallel.h"
+#include "lf/densify/depth_sweep.h"
 #include "lf/densify/stored_planes.h"
 
 namespace lf {

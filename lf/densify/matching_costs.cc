@@ -7,6 +7,7 @@
 
 #include "lf/core/check.h"
 #include "lf/densify/matching_row.h"
+#include "lf/densify/plane_set.h"
 
 namespace lf {
 namespace {
@@ -79,7 +80,15 @@ SweepView ViewFrom(const WorkingImage& reference, const WorkingImage& image) {
 void ComputeMatchingCosts(const WorkingImage& reference, std::span<const SweepView> views,
                           const InverseDepths& range, int planes, const PixelRect& rect,
                           MatchingCosts* result, InterruptFlag interrupted) {
-  LF_CHECK(!views.empty() && planes >= 2 && !rect.empty());
+  ComputeMatchingCosts(reference, views, PlaneSet::All(planes).Depths(range, planes), rect, result,
+                       interrupted);
+}
+
+void ComputeMatchingCosts(const WorkingImage& reference, std::span<const SweepView> views,
+                          std::span<const float> depths, const PixelRect& rect,
+                          MatchingCosts* result, InterruptFlag interrupted) {
+  LF_CHECK(!views.empty() && depths.size() >= 2 && !rect.empty());
+  const auto planes = static_cast<int>(depths.size());
   const int width = rect.width(), last_y = reference.height() - 1, last_x = reference.width() - 1;
   result->rect = rect;
   result->planes = planes;
@@ -89,17 +98,16 @@ void ComputeMatchingCosts(const WorkingImage& reference, std::span<const SweepVi
 
   const std::vector<std::vector<int>> groups = GroupsOf(views);
   const std::vector<std::span<const int>> group_spans(groups.begin(), groups.end());
-  const double step = (range.greatest - range.least) / (planes - 1);
   const int x_begin = std::max(rect.x_begin - 1, 0), x_end = std::min(rect.x_end + 1, last_x + 1);
   ThreeRows differences(views.size(), planes, width);
   const auto compare = [&](int y) {
     for (size_t v = 0; v < views.size(); ++v) {
       const Image<uint16_t>& tones = views[v].image->tones;
       for (int plane = 0; plane < planes; ++plane) {
+        if (std::isnan(depths[plane])) continue;
         uint16_t* row = differences.Row(v, plane, y);
         CompareRow(reference.tones.row(y) + static_cast<size_t>(x_begin) * LfPixels::kRgbLanes,
-                   x_begin, y, x_end - x_begin, views[v].from_reference,
-                   static_cast<float>(range.least + plane * step),
+                   x_begin, y, x_end - x_begin, views[v].from_reference, depths[plane],
                    {tones.row(0), tones.width(), tones.height()},
                    row + (x_begin - rect.x_begin + 1));
         if (x_begin == rect.x_begin) row[0] = row[1];
@@ -122,13 +130,16 @@ void ComputeMatchingCosts(const WorkingImage& reference, std::span<const SweepVi
       if (!IsTransparent(&reference.tones.at(x, y))) shown.push_back(x);
     const int above = std::max(y - 1, 0), below = std::min(y + 1, last_y);
     for (int plane = 0; plane < planes; ++plane) {
+      uint8_t* of_plane = by_plane.data() + static_cast<size_t>(plane) * width;
+      if (std::isnan(depths[plane])) {
+        std::fill(of_plane, of_plane + width, uint8_t{MatchingCosts::kCarved});
+        continue;
+      }
       for (size_t v = 0; v < views.size(); ++v)
         MeanOfNine(differences.Row(v, plane, above), differences.Row(v, plane, y),
                    differences.Row(v, plane, below), width, means[v].data());
-      LeastOfGroups(mean_rows.data(), group_spans, width,
-                    by_plane.data() + static_cast<size_t>(plane) * width);
-      Carve(views, shown, y, static_cast<float>(range.least + plane * step), rect.x_begin,
-            by_plane.data() + static_cast<size_t>(plane) * width);
+      LeastOfGroups(mean_rows.data(), group_spans, width, of_plane);
+      Carve(views, shown, y, depths[plane], rect.x_begin, of_plane);
     }
     uint8_t* out = result->costs.data() + static_cast<size_t>(y - rect.y_begin) * row_size;
     for (int x = 0; x < width; ++x, out += result->stride) {

@@ -23,7 +23,7 @@ struct SweepView {
 // `image` must outlive the result.
 SweepView ViewFrom(const WorkingImage& reference, const WorkingImage& image);
 
-// Costs of a rectangle of pixels at `planes` inverse depths, evenly spaced over a range.
+// Costs of a rectangle of pixels at a sequence of inverse depths.
 struct MatchingCosts {
   // Largest cost: the mean of 3 x 3 differences of tones, each the sum over R, G and B and limited
   // to kMostDifference, in steps of 1/4.
@@ -36,7 +36,7 @@ struct MatchingCosts {
   static constexpr int kPadding = 32;
 
   PixelRect rect;
-  int planes = 0;
+  int planes = 0;  // number of costs of a pixel: entries of a PlaneSet
   int stride = 0;
   LargeVector<uint8_t> costs;  // [height][width][stride]
 
@@ -54,7 +54,12 @@ struct MatchingCosts {
 // a view that is transparent there (WorkingImage::empty): the cost is then kCarved, unless the
 // pixel is transparent.
 //   views        one or more
+//   depths       two or more; NaN: no depth is compared there, and costs are kCarved
 //   interrupted  once it is set, the result must not be used
+void ComputeMatchingCosts(const WorkingImage& reference, std::span<const SweepView> views,
+                          std::span<const float> depths, const PixelRect& rect,
+                          MatchingCosts* result, InterruptFlag interrupted = nullptr);
+// As above, at `planes` inverse depths, evenly spaced over a range.
 void ComputeMatchingCosts(const WorkingImage& reference, std::span<const SweepView> views,
                           const InverseDepths& range, int planes, const PixelRect& rect,
                           MatchingCosts* result, InterruptFlag interrupted = nullptr);

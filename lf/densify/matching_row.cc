@@ -18,6 +18,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace lf {
 namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr int kChunk = 256;       // pixels that are compared at once
 constexpr int kFractionBits = 5;  // positions between pixels, in steps of 1/32
@@ -58,6 +59,8 @@ HWY_ATTR void FindPlaces(const PairMap& map, float x_begin, float y, float z, in
     places->pixel[i] = is_inside ? row * width + column : kOutside;
   }
 }
+
+#if HWY_TARGET == HWY_SCALAR
 
 HWY_ATTR HWY_INLINE uint64_t PixelAt(const uint16_t* tones) {
   uint64_t pixel = 0;
@@ -105,6 +108,65 @@ HWY_ATTR void CompareSamples(const uint64_t* HWY_RESTRICT samples,
     costs[i] = (sum < kMost ? sum : kMost) * 4;
   }
 }
+
+#else
+
+// Weights of two neighbouring pixels, for each lane of their eight tones.
+struct Weights {
+  alignas(16) uint16_t below[kOne][8];  // that of the lower pixels
+  alignas(16) uint16_t right[kOne][8];  // those of the left pixel and the right one
+
+  constexpr Weights() : below(), right() {
+    for (int weight = 0; weight < kOne; ++weight)
+      for (int lane = 0; lane < 8; ++lane) {
+        below[weight][lane] = static_cast<uint16_t>(weight);
+        right[weight][lane] = static_cast<uint16_t>(lane < 4 ? kOne - weight : weight);
+      }
+  }
+};
+constexpr Weights kWeights;
+
+// Interpolates the tones at each place. Two neighbouring pixels of a row are one vector of eight
+// 16-bit tones, each below 256.
+HWY_ATTR void Interpolate(const Places& places, int count, const TonesView& view,
+                          uint64_t* HWY_RESTRICT samples) {
+  const hn::FixedTag<uint16_t, 8> d;
+  const hn::Repartition<uint32_t, decltype(d)> d32;
+  const hn::Repartition<uint64_t, decltype(d)> d64;
+  const size_t below_stride = static_cast<size_t>(view.width) * 4;
+  for (int i = 0; i < count; ++i) {
+    const size_t pixel = static_cast<size_t>(std::max(places.pixel[i], 0)) * 4;
+    const auto above = hn::LoadU(d, view.data + pixel);
+    const auto below = hn::LoadU(d, view.data + pixel + below_stride);
+    const auto weight_below = hn::Load(d, kWeights.below[places.below[i]]);
+    // (1 - w) a + w b. The difference may be negative, but the sum is not, and has at most 13 bits.
+    const auto columns = hn::ShiftRight<2>(
+        hn::Add(hn::ShiftLeft<kFractionBits>(above), hn::Mul(hn::Sub(below, above), weight_below)));
+    const auto parts = hn::Mul(columns, hn::Load(d, kWeights.right[places.right[i]]));
+    const auto sum = hn::Add(parts, hn::BitCast(d, hn::Shuffle1032(hn::BitCast(d32, parts))));
+    samples[i] = hn::GetLane(hn::BitCast(d64, hn::ShiftRight<8>(sum)));
+  }
+}
+
+// Writes the costs of samples: 4 times the sum of the absolute differences of the tones.
+HWY_ATTR void CompareSamples(const uint64_t* HWY_RESTRICT samples,
+                             const uint64_t* HWY_RESTRICT wanted, int count,
+                             uint64_t* HWY_RESTRICT costs) {
+  const hn::ScalableTag<uint64_t> d;
+  const hn::Repartition<uint8_t, decltype(d)> d8;
+  const hn::Repartition<uint16_t, decltype(d)> d16;
+  const auto most = hn::Set(d16, uint16_t{MatchingCosts::kMostDifference});
+  // Arrays have kChunk samples, so that the last vector may reach beyond `count`.
+  for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
+    const auto a = hn::BitCast(d8, hn::Load(d, samples + i));
+    const auto b = hn::BitCast(d8, hn::Load(d, wanted + i));
+    const auto sums = hn::SumsOf8(hn::Or(hn::SaturatedSub(a, b), hn::SaturatedSub(b, a)));
+    const auto limited = hn::ShiftLeft<2>(hn::Min(hn::BitCast(d16, sums), most));
+    hn::Store(hn::BitCast(d, limited), d, costs + i);
+  }
+}
+
+#endif
 
 HWY_ATTR void CompareRow(const uint16_t* reference, int x_begin, int y, int count,
                          const PairMap& map, float z, const TonesView& view, uint16_t* costs) {

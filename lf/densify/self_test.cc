@@ -12,6 +12,7 @@
 #include "lf/densify/camera_chart.h"
 #include "lf/densify/camera_lattice.h"
 #include "lf/densify/depth_plane.h"
+#include "lf/densify/depth_sweep.h"
 #include "lf/densify/synthesis.h"
 #include "lf/densify/virtual_cameras.h"
 #include "lf/densify/working_images.h"

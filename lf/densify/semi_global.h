@@ -4,14 +4,30 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "lf/core/image.h"
 #include "lf/densify/matching_costs.h"
+#include "lf/densify/plane_set.h"
 #include "lf/densify/watched_loop.h"
 
 namespace lf {
 
-// The chosen places of the pixels of MatchingCosts::rect.
+// The costs of a rectangle of pixels, in blocks of their own planes.
+struct CostBlocks {
+  struct Block {
+    PlaneSet planes;
+    MatchingCosts costs;  // an entry of the set is an inverse depth of the costs
+  };
+  PixelRect rect;
+  // Blocks have this many columns and rows; the last ones may have fewer.
+  int side = 0;
+  std::vector<Block> blocks;  // row by row
+
+  static int CountAlong(int size, int side) { return (size + side - 1) / side; }
+};
+
+// The chosen places of the pixels of MatchingCosts::rect or CostBlocks::rect.
 struct ChosenPlanes {
   // Between 0, the first plane, and planes - 1, the last one; interpolated by a parabola through
   // the sums of three planes.
@@ -32,6 +48,10 @@ inline constexpr int kLargeStep = 480;
 //   tones        of the whole reference image
 //   interrupted  once it is set, the result must not be used
 ChosenPlanes ChoosePlanes(const MatchingCosts& costs, const Image<uint16_t>& tones, bool with_lead,
+                          InterruptFlag interrupted = nullptr);
+// As above. A path goes from block to block; planes that a block does not have are not chosen
+// there.
+ChosenPlanes ChoosePlanes(const CostBlocks& blocks, const Image<uint16_t>& tones,
                           InterruptFlag interrupted = nullptr);
 
 }  // namespace lf

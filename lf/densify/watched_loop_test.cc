@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "lf/densify/depth_plane.h"
+#include "lf/densify/depth_sweep.h"
 #include "lf/densify/synthesis.h"
 #include "lf/densify/test_world.h"
 

@@ -152,7 +152,7 @@ WorkingImage WorkingImageOf(const PinholeCamera& lf_camera, const LfPixels& pixe
     distorted.distortion = lf_camera.intrinsics.distortion;
     image.light = Undistorted(image.light, distorted, image.black);
   }
-  image.tones = Image<uint16_t>(image.width(), image.height(), LfPixels::kRgbLanes);
+  image.tones = Image<uint16_t>(image.light.width(), image.light.height(), LfPixels::kRgbLanes);
   const size_t count = image.light.pixels().size();
   for (size_t i = 0; i < count; i += LfPixels::kRgbLanes) {
     const uint16_t* light = image.light.pixels().data() + i;
@@ -163,6 +163,14 @@ WorkingImage WorkingImageOf(const PinholeCamera& lf_camera, const LfPixels& pixe
   }
   image.empty = EmptyPixels(image.tones);
   return image;
+}
+
+WorkingImage ReducedTones(const WorkingImage& image, int divisor) {
+  WorkingImage reduced;
+  reduced.camera = WorkingCamera(image.camera, divisor);
+  reduced.tones = Reduced(image.tones, divisor);
+  reduced.empty = EmptyPixels(reduced.tones);
+  return reduced;
 }
 
 LightField WithOpacities(LightField light_field) {

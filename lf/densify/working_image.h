@@ -31,8 +31,8 @@ struct WorkingImage {
   // no such pixel.
   Image<uint8_t> empty = {};
   uint16_t black = 0;  // 16-bit radiance of no light
-  int width() const { return light.width(); }
-  int height() const { return light.height(); }
+  int width() const { return tones.width(); }
+  int height() const { return tones.height(); }
 };
 
 inline constexpr int kTransparentTone = 64;
@@ -81,6 +81,10 @@ class ToneCurve {
 // x divisor pixels. Pixels that the LF image does not show are masked.
 WorkingImage WorkingImageOf(const PinholeCamera& lf_camera, const LfPixels& pixels, int divisor,
                             const ToneCurve& curve);
+
+// Returns the image with tones that are means of divisor x divisor tones, for comparing alone: it
+// has no light.
+WorkingImage ReducedTones(const WorkingImage& image, int divisor);
 
 // Returns the light field with the opacities of its LF images, if they have some, in place of a
 // background.
