@@ -262,9 +262,11 @@ std::optional<FilmGroup> GroupOfFilm(const LightField& light_field,
   constexpr size_t kAsked = 8;
   constexpr double kMiddle = 1.0 / 8;  // of the distance of the farthest that is asked
   constexpr double kLeastMean = 2.0 / 3, kLeastOfFrame = 0.5;
+  const std::vector<uint32_t> all_ids = FarEnoughApart(light_field, {});
   std::vector<double> sums(groups.size(), 0), least(groups.size(), 1);
   for (const RenderCamera& frame : frames) {
-    const CameraChart chart = ChartAround(light_field, frame.pinhole, 1 / frame.focus_distance_w);
+    const CameraChart chart =
+        ChartAround(light_field, all_ids, frame.pinhole, 1 / frame.focus_distance_w);
     std::vector<uint32_t> near = ByDistance(chart.points, Vec2::Zero());
     near.resize(std::min(kAsked, near.size()));
     const double middle = near.empty() ? 0 : kMiddle * chart.points[near.back()].norm();
