@@ -56,6 +56,10 @@ struct DevelopOptions {
   double transparent = 0;
   double opaque = 65535;
 
+  // For a guarded plate: the effective number of recorded LF images of each element (picture.h). If
+  // given, elements that show several of them take all rays whatever their trust.
+  const Image<float>* effective_count = nullptr;
+
   // Light interpolated from rebinned rays. If given, it is mixed with collected light, and used
   // alone in elements without rays. Must be null unless the plate has only colours.
   const Completion* completion = nullptr;
@@ -72,7 +76,9 @@ struct DevelopOptions {
 inline constexpr double kGuardFrom = 0.1;
 inline constexpr double kGuardTo = 0.2;
 // It shows the rays of all LF images only where their trust is above kTrustFrom, without loss from
-// kTrustTo on.
+// kTrustTo on, if the recorded rays are those of a single LF image: this is sharp, and right from
+// one place. The copies that several LF images show are farther from the truth than rays of low
+// trust are.
 inline constexpr double kTrustFrom = 0.3;
 inline constexpr double kTrustTo = 0.45;
 // An element is doubtful if its trust is below kDoubtfulTrust: more than a fifth of such elements
@@ -94,8 +100,10 @@ inline constexpr double kDoubtfulTrust = 0.8;
 // collected, with enough rays. Then Develop() applies white balance and linear_srgb_from_camera.
 // The average of a guarded plate is R + m t (V - R), where R is the average of the recorded rays, V
 // that of all rays, m grows from 0 to 1 like s^2 (3 - 2 s) where s is the share of defocus from
-// kGuardFrom to kGuardTo, and t likewise where s is the trust from kTrustFrom to kTrustTo. Without
-// recorded rays it is V, whatever the trust. The opacity has the same formula.
+// kGuardFrom to kGuardTo, and t = 1 - p (1 - S), where S grows likewise where s is the trust from
+// kTrustFrom to kTrustTo, and p falls from 1 to 0 where the effective number of recorded LF images
+// grows from 1 to 2; p = 1 if the number is not known. Without recorded rays it is V, whatever the
+// trust. The opacity has the same formula.
 // Opacities are averaged and filled like a colour, from the same neighbours, and clipped. Counts
 // above 2^32 - 1 become 2^32 - 1. The bits do not depend on the number of threads.
 DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, ThreadPool& pool);

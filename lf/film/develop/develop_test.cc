@@ -178,6 +178,30 @@ TEST(Develop, AGuardedElementShowsAllRaysOnlyOutOfFocus) {
   }
 }
 
+// The copies of several recorded LF images are not better than rays of low trust.
+TEST(Develop, TrustCountsOnlyBesideASingleRecordedLfImage) {
+  ThreadPool pool(2);
+  const SensorPlate recorded = RandomPlate(50, 37, 1, 6, 5), all = RandomPlate(50, 37, 1, 9, 8);
+  DevelopOptions options;
+  options.opaque = 60000;
+  for (const auto& [effective, share] : {std::pair{0.0F, 0.0},
+                                         {1.0F, 0.0},
+                                         {1.25F, 0.25},
+                                         {1.75F, 0.75},
+                                         {2.0F, 1.0},
+                                         {9.0F, 1.0}}) {
+    const Image<float> counts(50, 37, 1, effective);
+    options.effective_count = &counts;
+    const auto densified_of = [&](double defocus, double trust) {
+      return Develop(GuardedOf(recorded, all, defocus, trust), options, pool).densified.at(2, 1);
+    };
+    EXPECT_NEAR(densified_of(1, 0.2), share, 1e-6) << effective;
+    EXPECT_NEAR(densified_of(0.15, 0.2), share / 2, 1e-6) << effective;
+    EXPECT_NEAR(densified_of(1, 0.5), 1, 1e-6) << effective;
+    EXPECT_EQ(densified_of(0, 0.5), 0) << effective;
+  }
+}
+
 TEST(Develop, TheOpacityOfAGuardedElementIsMixedLikeItsColours) {
   ThreadPool pool(2);
   const SensorPlate recorded = RandomPlate(50, 37, 1, 6, 5), all = RandomPlate(50, 37, 1, 9, 8);

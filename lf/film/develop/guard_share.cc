@@ -28,8 +28,12 @@ GuardShare GuardShareOf(const SensorPlate& plate, const DevelopOptions& options,
   if (defocus.count == 0) return {1, trusted, is_doubtful};
   const double blurred = SmoothStep(MeanShareOf(defocus, options), kGuardFrom, kGuardTo);
   if (blurred == 0) return {};
-  return {blurred * SmoothStep(trusted, kTrustFrom, kTrustTo), trusted,
-          is_doubtful && blurred > 0.5};
+  const double single =
+      options.effective_count
+          ? std::clamp(2.0 - static_cast<double>(options.effective_count->at(x, y)), 0.0, 1.0)
+          : 1;
+  const double shown = 1 - single * (1 - SmoothStep(trusted, kTrustFrom, kTrustTo));
+  return {blurred * shown, trusted, is_doubtful && blurred > 0.5};
 }
 
 }  // namespace lf

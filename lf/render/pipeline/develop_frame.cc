@@ -49,6 +49,10 @@ RenderedFrame DevelopFrame(const PlateNotes& notes, const SensorPlate& plate,
   // Notes that were read from a file lack these two.
   develop.transparent = LfPixels::kTransparent;
   develop.opaque = LfPixels::kOpaque;
+  Image<float> effective;
+  if (notes.weighed && (with_effective || plate.is_guarded()))
+    effective = SpreadOverPlate(notes.weighed->effective_counts, notes.camera.pinhole.intrinsics);
+  if (plate.is_guarded() && !effective.empty()) develop.effective_count = &effective;
   RenderedFrame frame;
   frame.picture = Develop(plate, develop, pool);
   if (is_interrupted && is_interrupted()) return frame;
@@ -59,8 +63,7 @@ RenderedFrame DevelopFrame(const PlateNotes& notes, const SensorPlate& plate,
     const Image<float>& counts = notes.weighed->effective_counts;
     frame.report.weighed = {MedianOfSeen(counts.pixels()), notes.weighed->hat_share,
                             notes.weighed->coverage};
-    if (with_effective)
-      frame.picture.effective_count = SpreadOverPlate(counts, notes.camera.pinhole.intrinsics);
+    if (with_effective) frame.picture.effective_count = std::move(effective);
   }
   frame.report.develop_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
