@@ -246,7 +246,7 @@ class Synthesizer {
   // 0 if nothing is at the pixel.
   size_t Vote(int x, int y, std::array<Candidate, kMostSources>* result) const {
     // Candidates this near to each other, in tolerances, are one.
-    constexpr float kSame = 0.3f;
+    constexpr float kSame = 0.5f;
     // A vote against a depth counts less, because planes are wrong near outlines.
     constexpr float kThrough = -1.5f, kAgainst = 0.7f;
     constexpr float kNearer = 0.02f;  // lead that a farther candidate needs, and a nearer one lacks
