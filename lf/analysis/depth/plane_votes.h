@@ -41,7 +41,8 @@ VotedDepths Vote(std::span<const Image<float>> candidates, double tolerance, Thr
 // depths. Depths are equal if points at them differ by at most 1.25 elements in an LF image at the
 // median distance of these.
 //   store  opened for depths
-// kUsage: the store has no depths of three LF images. kInput: no element has a depth. kInterrupted: *stop became true.
+// kUsage: the store has no depths of three LF images. kInput: no element has a depth. kInterrupted:
+// *stop became true.
 Result<VotedDepths> VoteDepths(const LightField& light_field, const LfImageStore& store,
                                const RenderCamera& frame, ThreadPool& pool,
                                const std::atomic<bool>* stop);
