@@ -50,7 +50,11 @@ constexpr const char* kMethod =
 lens with fewer than 12 LF cameras is widened. Surfaces without texture, beyond --near and --far, or
 seen by too few LF cameras have no depth. An element
 has no depth either if most elements of its colour around it have none or another one: a border
-beside it may belong to another surface. Virtual LF images are left out.)";
+beside it may belong to another surface. Virtual LF images are left out.
+
+A densified store (lfdensify) has the depths of recorded LF images. With --from store, they are used
+in place of a comparison: if LF cameras are far apart, many more elements have a depth, also on
+surfaces without texture, where it may be wrong.)";
 
 const HelpTexts kDepthHelp = {
     .summary = "Finds the depth of every element of a frame.",
@@ -80,6 +84,7 @@ struct DepthArguments {
   size_t planes = 0, views = 200;
   int window = 5;
   double confidence = 0.5;
+  std::string from = "sweep";
   bool fill = false, clean = false, overwrite = false;
   AllowMissing allow_missing;
 };
@@ -93,6 +98,11 @@ void AddInput(CLI::App& app, DepthArguments& a) {
 
 void AddSweep(CLI::App& app, DepthArguments& a) {
   OptionGroup sweep(app, kPictureGroup);
+  sweep.AddChoice("--from", a.from, {"sweep", "store"},
+                  "Where depths come from\n"
+                  "sweep: LF images are compared. store: LIGHTFIELD is a densified store, and the "
+                  "12 LF images nearest to the camera vote with the depths that it has of them; "
+                  "the options of the comparison cannot be given.");
   sweep
       .Add("--planes N", a.planes,
            "Number of distances that are tested (by the lens)\n"
@@ -177,13 +187,19 @@ Result<DepthRange> RangeOf(const DepthArguments& a, const LightField& light_fiel
 struct Made {
   DepthMap map;
   DevelopedFrame picture;
-  DepthRange range;
   std::vector<FileLock> locks;  // of the outputs
 };
 
 Result<Made> Make(const DepthArguments& a, const CommonOptions& common, ThreadPool& pool,
                   const std::atomic<bool>& interrupted) {
   LF_RETURN_IF_ERROR(a.allow_missing.Limit());
+  const DepthArguments defaults;
+  if (a.from == "store" &&
+      (a.planes != defaults.planes || a.near != defaults.near || a.far != defaults.far || a.clean ||
+       a.window != defaults.window || a.views != defaults.views))
+    return UsageError(
+        "--from store: LF images are not compared: leave out --planes, --near, --far, --views, "
+        "--window and --clean");
   if (a.window % 2 == 0)
     return UsageError(fmt::format("--window {}: expected an odd number of elements", a.window));
   DepthMapOptions options;
@@ -196,8 +212,10 @@ Result<Made> Make(const DepthArguments& a, const CommonOptions& common, ThreadPo
   LF_ASSIGN_OR_RETURN(const CameraPath path,
                       a.frame.Open(light_field, PathOptions::Surface::kName));
   const RenderCamera& camera = path.Camera(a.frame.id());
-  LF_ASSIGN_OR_RETURN(made.range, RangeOf(a, light_field, camera, pool));
-  options.range = made.range;
+  options.from_store = a.from == "store";
+  if (!options.from_store) {
+    LF_ASSIGN_OR_RETURN(options.range, RangeOf(a, light_field, camera, pool));
+  }
   options.plane_count = a.planes;
   options.window_radius = a.window / 2;
   options.least_confidence = a.confidence;
@@ -205,8 +223,10 @@ Result<Made> Make(const DepthArguments& a, const CommonOptions& common, ThreadPo
   options.most_views = a.views;
   options.strict = common.strict;
   options.stop = &interrupted;
-  LF_ASSIGN_OR_RETURN(const std::unique_ptr<LfImageStore> store,
-                      OpenStore(light_field, Mosaics::kToRgb));
+  LF_ASSIGN_OR_RETURN(
+      const std::unique_ptr<LfImageStore> store,
+      OpenStore(light_field, Mosaics::kToRgb,
+                options.from_store ? StoreContent::kPixelsAndDepths : StoreContent::kPixels));
   const ImageIndex index(light_field);
   ProgressMeter meter(ParseProgressStyle(common.progress), "elements");
   const auto total = static_cast<uint64_t>(camera.pinhole.intrinsics.width_px) *
@@ -228,12 +248,18 @@ double KnownShare(const DepthMap& map) {
   return static_cast<double>(map.known_count) / (map.depth_w.width() * map.depth_w.height());
 }
 
+// Returns the number of distances that were tested, without one at either end.
+size_t PlaneCount(const DepthMap& map) {
+  return map.planes_w.empty() ? 0 : map.planes_w.size() - 2;
+}
+
 std::string ReportJson(const DepthArguments& a, const Made& made) {
   nlohmann::ordered_json report = {{"frame", a.frame.frame},
                                    {"files", a.outputs},
-                                   {"near_w", made.range.near_w},
-                                   {"far_w", made.range.far_w},
-                                   {"planes", made.map.planes_w.size() - 2},
+                                   {"from", a.from},
+                                   {"near_w", made.map.range.near_w},
+                                   {"far_w", made.map.range.far_w},
+                                   {"planes", PlaneCount(made.map)},
                                    {"lf_images_compared", made.map.view_count},
                                    {"lf_images_skipped", made.map.skipped.size()},
                                    {"known_share", KnownShare(made.map)}};
@@ -261,11 +287,17 @@ Error NothingKnown(const DepthArguments& a, const DepthMap& map) {
 // Tells what was made, and decides about LF images that were left out.
 Result<void> Finish(const DepthArguments& a, const CommonOptions& common, const Made& made) {
   const DepthMap& map = made.map;
-  LogInfo(
-      "{} LF images compared at {} distances from {:.6g} to {:.6g} world units; {:.1f} % of the "
-      "elements have a depth",
-      map.view_count, map.planes_w.size() - 2, made.range.near_w, made.range.far_w,
-      100 * KnownShare(map));
+  if (a.from == "store")
+    LogInfo(
+        "{}: has the depths of {} LF images near the camera, which were used in place of a sweep: "
+        "from {:.6g} to {:.6g} world units; {:.1f} % of the elements have a depth",
+        a.light_field.path, map.view_count, map.range.near_w, map.range.far_w,
+        100 * KnownShare(map));
+  else
+    LogInfo(
+        "{} LF images compared at {} distances from {:.6g} to {:.6g} world units; {:.1f} % of the "
+        "elements have a depth",
+        map.view_count, PlaneCount(map), map.range.near_w, map.range.far_w, 100 * KnownShare(map));
   if (common.json) LF_RETURN_IF_ERROR(PrintReport(ReportJson(a, made)));
   if (map.known_count == 0) return NothingKnown(a, map);
   if (map.skipped.empty()) return {};

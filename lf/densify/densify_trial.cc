@@ -43,7 +43,8 @@ std::string ObjectionOf(const std::vector<LeftOut>& tests, const InverseDepths& 
 
 namespace {
 
-// Tests a film. Finds LF images that contradict each other if the test fails.
+// Tests a film, unless LF images contradict each other.
+//   contradiction  is found if it is not null
 Result<DensifyTrial> Try(const LightField& light_field, const DensifyChoices& choices,
                          std::span<const std::string> source, ThreadPool& pool,
                          Contradiction* contradiction) {
@@ -53,15 +54,16 @@ Result<DensifyTrial> Try(const LightField& light_field, const DensifyChoices& ch
   trial.filled_radius_w = plan.filled_radius_w;
   trial.objection = plan.dense;
   if (!trial.objection.empty()) return trial;
+  if (contradiction != nullptr && light_field.size() <= kMostChecked) {
+    const PairSearch search = [&](std::span<const uint32_t> ids) {
+      return ComparePairs(light_field, *store, ids, plan.range, pool);
+    };
+    LF_ASSIGN_OR_RETURN(*contradiction, FindContradiction(light_field, plan.serving, choices.frames,
+                                                          source, search));
+    if (!contradiction->text.empty()) return trial;
+  }
   LF_ASSIGN_OR_RETURN(trial.tests, TestByLeavingOut(light_field, *store, plan, pool));
   trial.objection = ObjectionOf(TestsOf(trial.tests, false), plan.range, true);
-  if (trial.objection.empty() || light_field.size() > kMostChecked) return trial;
-  LF_ASSIGN_OR_RETURN(*contradiction, FindContradiction(light_field, plan.serving, choices.frames,
-                                                        source, [&](std::span<const uint32_t> ids) {
-                                                          return ComparePairs(light_field, *store,
-                                                                              ids, plan.range,
-                                                                              pool);
-                                                        }));
   return trial;
 }
 
@@ -74,15 +76,15 @@ Result<DensifyTrial> TryDensify(const LightField& light_field, const DensifyChoi
   LightField field = WithOpacities(light_field);
   Contradiction found;
   LF_ASSIGN_OR_RETURN(DensifyTrial trial, Try(field, choices, source, pool, &found));
+  if (found.text.empty()) return trial;
   if (found.kept.empty()) {
-    if (!found.text.empty()) trial.objection = found.text;
+    trial.objection = found.text;
     return trial;
   }
   KeepImages(found.kept, &field);
-  Contradiction further;
-  LF_ASSIGN_OR_RETURN(DensifyTrial of_group, Try(field, choices, source, pool, &further));
-  of_group.left_out = found.text;
-  return of_group;
+  LF_ASSIGN_OR_RETURN(trial, Try(field, choices, source, pool, nullptr));
+  trial.left_out = found.text;
+  return trial;
 }
 
 }  // namespace lf

@@ -32,9 +32,8 @@ struct DensifyTrial {
   double filled_radius_w = 0;  // DensifyPlan::filled_radius_w
 };
 
-// Makes the plan for a film and tests it, at a fraction of the cost of Densify(). If the test
-// fails, looks for LF images that contradict each other, and tests the film with those of its own
-// group.
+// Makes the plan for a film and tests it, at a fraction of the cost of Densify(). If LF images
+// contradict each other, tests it with those of the group in its lenses.
 //   choices  with frames
 //   source   LIGHTFIELD and its options, as the user gave them, for the commands of messages
 // Errors as CheckKind(), OpenStore(), PlanDensify() and TestByLeavingOut().

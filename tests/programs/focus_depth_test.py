@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tests lffocus depth and lffocus sharp: depths of known scenes, sharp pictures against true ones, all file formats.
 
-usage: focus_depth_test.py LFFOCUS LFSYNTH
+usage: focus_depth_test.py LFFOCUS LFSYNTH LFDENSIFY
 """
 import json
 import os
@@ -18,7 +18,7 @@ import numpy as np
 from exr_file import attributes_of, channels_of
 from program_test_case import ProgramTestCase
 
-FOCUS = SYNTH = None
+FOCUS = SYNTH = DENSIFY = None
 GROUNDTRUTH = pathlib.Path(os.environ.get("LF_TEST_DATA", "../shared")) / "groundtruth"
 NEAR, FAR = 0.5, 2
 PATH = """format: lfpath 1
@@ -182,6 +182,37 @@ class FocusDepthTest(ProgramTestCase):
         found = rgb(channels_of(self.folder / "sharp.exr"))
         self.assertGreater(psnr_db(found, np.clip(truth, 0, 1)), 35)
 
+    def test_the_depths_of_a_densified_store_are_more_and_true_where_lf_cameras_are_far_apart(self):
+        field, store, path = (self.folder / name for name in ("sparse", "dense.lfs", "path.yaml"))
+        path.write_text(PATH.format(diameter=0.06))
+        self.succeeds(SYNTH, "chart", "-o", field, "--count", 25, "--size", "240x160", "--spacing", 0.03, "-q")
+        self.succeeds(DENSIFY, field, path, "-o", store, "--most", 20, "--depths", NEAR, FAR, "-q")
+        step = 0.5 / (120 / np.tan(np.radians(25)) * 0.03)  # half an element at the rim of the lens
+        is_surface, right = np.isfinite(self.truth["Z"]), {}
+        for name, options in (("sweep", ["--near", NEAR, "--far", FAR]), ("store", ["--from", "store"])):
+            result = self.call(FOCUS, "depth", store, path, "-o", self.folder / f"{name}.exr", "--json", *options)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual(json.loads(result.stdout)["from"], name)
+            self.assertEqual("has the depths of 12 LF images" in result.stderr, name == "store", result.stderr)
+            depths = channels_of(self.folder / f"{name}.exr")["Z"]
+            off = np.abs(1 / depths - 1 / self.truth["Z"]) / step
+            right[name] = (off[is_surface] <= 2).mean()
+        self.assertGreater(right["store"], 0.95)
+        self.assertGreater(right["store"], right["sweep"] + 0.1)
+        self.depth_bits_of_threads(store, path)
+
+    def depth_bits_of_threads(self, store, path):
+        """Checks that depths of a store and their picture have the same bits for any number of threads."""
+        for threads in (1, 3):
+            self.succeeds(FOCUS, "depth", store, path, "-o", self.folder / f"{threads}.exr", "--from", "store",
+                          "--threads", threads)
+        self.assertEqual((self.folder / "1.exr").read_bytes(), (self.folder / "3.exr").read_bytes())
+
+    def test_depths_are_only_taken_from_densified_stores(self):
+        for words, options in ((["--from store", "densified store"], []), (["leave out", "--near"], ["--near", 0.5])):
+            self.fails(2, words, FOCUS, "depth", self.field, self.path, "-o", self.folder / "d.exr", "--from", "store",
+                       *options)
+
     # Errors
 
     def test_wrong_calls_are_refused(self):
@@ -308,5 +339,5 @@ class FocusDepthTest(ProgramTestCase):
 
 
 if __name__ == "__main__":
-    FOCUS, SYNTH = sys.argv[1:3]
+    FOCUS, SYNTH, DENSIFY = sys.argv[1:4]
     unittest.main(argv=sys.argv[:1])

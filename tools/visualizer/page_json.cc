@@ -111,7 +111,9 @@ std::string SceneJson(const PageScene& scene, const PathDraft& draft,
                       const PageAbilities& abilities) {
   const LightField& field = scene.light_field();
   const PageArguments& arguments = scene.arguments();
-  const FilmCommands commands = CommandsOf(arguments);
+  const FilmCommands commands = CommandsOf(
+      arguments, !scene.store().IsPartial() &&
+                     TakesDensify(field, arguments.film, draft.path->has_focal_surface()));
   Json json = {{"version", Version()},
                {"light_field",
                 {{"name", arguments.light_field},
@@ -123,7 +125,8 @@ std::string SceneJson(const PageScene& scene, const PathDraft& draft,
                {"commands",
                 {{"forecast", commands.forecast},
                  {"render", commands.render},
-                 {"packages", commands.packages}}},
+                 {"packages", commands.packages},
+                 {"densify", commands.densify}}},
                {"packages", OfPackages(scene)},
                {"packages_note", scene.packages_note()},
                {"watch", arguments.watch.string()},
@@ -153,7 +156,10 @@ std::string DensityJson(PageScene& scene, const PathDraft& draft, FrameId frame)
                      {"depths", {density.depths.near_w, density.depths.far_w}},
                      {"depths_known", scene.light_field().depth_range.has_value()},
                      {"near_displacement_px", density.near_displacement_px},
-                     {"far_displacement_px", density.far_displacement_px}});
+                     {"far_displacement_px", density.far_displacement_px},
+                     {"copies_px", WantsVirtual(density, HasVirtual(scene.light_field()))
+                                       ? Json(density.MostDisplacement_px())
+                                       : Json()}});
 }
 
 std::string CameraJson(const PageScene& scene, LfImageId id) {

@@ -35,6 +35,8 @@ export function showCommands(state: State): void {
     ["On this machine", commands.render],
     ["In packages, for several machines (lfsubmit, Slurm)", commands.packages],
   ];
+  if (state.density?.copies_px && commands.densify)
+    blocks.push(["With virtual LF images, because LF cameras stand far apart", commands.densify]);
   open(
     element("h2", {}, "Commands that make this film"),
     state.isChanged ? element("p", { class: "bad" }, "The path has changes that are not saved: save it first.") : "",

@@ -13,6 +13,7 @@
 #include "lf/analysis/depth/guided_depths.h"
 #include "lf/analysis/depth/lens_views.h"
 #include "lf/analysis/depth/plane_sweep.h"
+#include "lf/analysis/depth/plane_votes.h"
 #include "lf/analysis/depth/sharp_plate.h"
 #include "lf/analysis/focus_stack/focus_planes.h"
 #include "lf/core/log.h"
@@ -142,11 +143,12 @@ std::vector<PixelRect> TilesOf(const PixelRect& part) {
 class DepthMaker {
  public:
   DepthMaker(const ImageIndex& index, const LfImageStore& store, FrameId id,
-             const RenderCamera& frame, const DepthMapOptions& options, ThreadPool& pool,
-             const std::function<void(double)>& progress)
+             const RenderCamera& frame, const DepthMapOptions& options, const VotedDepths* voted,
+             ThreadPool& pool, const std::function<void(double)>& progress)
       : light_field_(index.light_field()),
         id_(id),
         options_(options),
+        voted_(voted),
         aperture_radius_w_(frame.aperture.radius_w),
         pool_(pool),
         progress_(progress),
@@ -169,20 +171,25 @@ class DepthMaker {
   }
 
   Result<DepthMap> Make() {
-    if (in_lens_.cameras.size() < kLeastViews)
+    if (!voted_ && in_lens_.cameras.size() < kLeastViews)
       return InputError(fmt::format(
           "{} LF camera{} the scene through the lens: expected at least {} to compare",
           in_lens_.cameras.size(), in_lens_.cameras.size() == 1 ? " sees" : "s see", kLeastViews));
-    TellOfLens();
+    if (!voted_) TellOfLens();
     const Intrinsics& plate = frame_.pinhole.intrinsics;
-    map_.view_count = in_lens_.cameras.size();
+    map_.range = options_.range;
+    map_.view_count = voted_ ? voted_->view_count : in_lens_.cameras.size();
     LF_ASSIGN_OR_RETURN(const std::vector<PixelRect> parts,
                         views_->CutPlate(options_.memory_bytes));
-    for (const PixelRect& part : parts) {
-      LF_RETURN_IF_ERROR(views_->Load(part, pool_, options_.stop));
-      LF_RETURN_IF_ERROR(Sweep(part));
+    if (voted_) {
+      TakeVoted();
+    } else {
+      for (const PixelRect& part : parts) {
+        LF_RETURN_IF_ERROR(views_->Load(part, pool_, options_.stop));
+        LF_RETURN_IF_ERROR(Sweep(part));
+      }
+      Judge();
     }
-    Judge();
     Fill();
     map_.sharp = SensorPlate(plate.width_px, plate.height_px);
     for (auto part = parts.rbegin(); part != parts.rend(); ++part) {
@@ -301,6 +308,18 @@ class DepthMaker {
     map_.confidence = std::move(swept_.confidence);
   }
 
+  void TakeVoted() {
+    map_.planes_w.clear();
+    map_.depth_w = voted_->inverse;
+    map_.confidence = voted_->confidence;
+    for (int y = 0; y < map_.depth_w.height(); ++y)
+      for (int x = 0; x < map_.depth_w.width(); ++x) {
+        float& depth = map_.depth_w.at(x, y);
+        const bool is_sure = map_.confidence.at(x, y) >= options_.least_confidence;
+        depth = is_sure ? 1 / depth : std::numeric_limits<float>::quiet_NaN();
+      }
+  }
+
   // Inverse distances are filled, because they are linear on planes.
   void Fill() {
     Image<float> inverse = map_.depth_w;
@@ -331,6 +350,7 @@ class DepthMaker {
   const LightField& light_field_;
   const FrameId id_;
   const DepthMapOptions& options_;
+  const VotedDepths* const voted_;  // null: depths are found by a sweep
   const double aperture_radius_w_;
   ThreadPool& pool_;
   const std::function<void(double)>& progress_;
@@ -373,8 +393,15 @@ size_t PlanesFor(const RenderCamera& frame, const DepthRange& range, double lens
 Result<DepthMap> MakeDepthMap(const ImageIndex& index, const LfImageStore& store, FrameId id,
                               const RenderCamera& frame, const DepthMapOptions& options,
                               ThreadPool& pool, const std::function<void(double)>& progress) {
-  LF_RETURN_IF_ERROR(CheckOptions(options));
-  return DepthMaker(index, store, id, frame, options, pool, progress).Make();
+  if (!options.from_store) {
+    LF_RETURN_IF_ERROR(CheckOptions(options));
+    return DepthMaker(index, store, id, frame, options, nullptr, pool, progress).Make();
+  }
+  LF_ASSIGN_OR_RETURN(const VotedDepths voted,
+                      VoteDepths(index.light_field(), store, frame, pool, options.stop));
+  DepthMapOptions of_store = options;
+  of_store.range = voted.range;
+  return DepthMaker(index, store, id, frame, of_store, &voted, pool, progress).Make();
 }
 
 }  // namespace lf

@@ -2,6 +2,8 @@
 // Finds the depth of every element of a frame by a plane sweep over the LF images behind its lens,
 // and makes a picture in which everything is in focus.
 //
+// Depths that a densified store has can take the place of the sweep.
+//
 // Surfaces without texture, beyond the range of distances, or seen by too few LF cameras have no
 // depth: nothing is invented. An element has no depth either if most elements of its colour around
 // it have none or another one, because a border beside it may belong to another surface.
@@ -27,6 +29,9 @@
 namespace lf {
 
 struct DepthMapOptions {
+  // True: depths are those that a densified store has of recorded LF images. range, plane_count,
+  // window_radius, clean and most_views are then not used.
+  bool from_store = false;
   DepthRange range;        // distances along the optical axis; 0 < near_w < far_w
   size_t plane_count = 0;  // distances that are tested; 0: as many as PlanesFor() returns
   int window_radius = 2;   // elements; costs are means over windows of 2 r + 1 elements
@@ -52,8 +57,9 @@ struct DepthMap {
   // Light of the elements at filled_w, of a pinhole, and what DevelopFrame() needs to develop it.
   SensorPlate sharp{0, 0};
   PlateNotes notes;
-  std::vector<double> planes_w;  // distances of the sweep
-  size_t view_count = 0;         // LF images that were compared
+  DepthRange range;  // of the distances that were tested, or of the depths that the store has
+  std::vector<double> planes_w;  // distances of the sweep; empty if there was none
+  size_t view_count = 0;         // LF images that were compared, or whose depths were used
   // Number of elements with a depth.
   size_t known_count = 0;
   std::vector<SkippedImage> skipped;  // broken LF images
@@ -75,9 +81,10 @@ size_t PlanesFor(const RenderCamera& frame, const DepthRange& range, double lens
 // than 12 is widened until it has as many. Virtual LF images are left out. The result has the same
 // bits for any number of threads and any memory_bytes.
 //   index     of the whole light field
-//   store     must load RGB (Mosaics::kToRgb)
+//   store     must load RGB (Mosaics::kToRgb), and depths if options.from_store is set
 //   progress  called with the share that is done, from 0 to 1, by any thread; may be empty
-// kUsage: options out of range. kInput: fewer than 3 LF cameras see the scene, or a broken LF image
+// kUsage: options out of range; from_store is set, and no LF camera near the lens has depths.
+// kInput: fewer than 3 LF cameras see the scene, or a broken LF image
 // with `strict`. kOutput: memory_bytes is too small for the views of 16 rows, or the machine lacks
 // something. kInterrupted: *stop became true.
 Result<DepthMap> MakeDepthMap(const ImageIndex& index, const LfImageStore& store, FrameId id,

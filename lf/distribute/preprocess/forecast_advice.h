@@ -10,9 +10,6 @@
 
 namespace lf {
 
-// Largest distance, in elements, at which two copies of an edge still look like one edge.
-inline constexpr double kDoubleEdge_px = 2;
-
 // Lengths are in world units. Focus distances, depths and frame sizes are those at which copies of
 // an edge are 0.98 kDoubleEdge_px apart, so that these values may be rounded.
 struct ForecastAdvice {

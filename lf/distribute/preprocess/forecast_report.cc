@@ -159,7 +159,7 @@ std::vector<std::string> DensityWarnings(const PreprocessReport& report, const C
                                  : "",
                     RangeText(advice.depths, path.unit_m), advice.width_px, advice.height_px,
                     plate.width_px, plate.height_px, std::ceil(most_px / kDoubleEdge_px),
-                    report.light_field_virtual_count == 0
+                    WantsVirtual(density, report.light_field_virtual_count > 0)
                         ? ", or virtual LF images between the recorded ones (lfdensify)"
                         : ""));
   }

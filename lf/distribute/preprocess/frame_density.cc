@@ -65,6 +65,10 @@ double FrameDensity::DepthOfMost_w() const {
   return near_displacement_px >= far_displacement_px ? depths.near_w : depths.far_w;
 }
 
+bool WantsVirtual(const FrameDensity& density, bool has_virtual) {
+  return !has_virtual && density.MostDisplacement_px() > kDoubleEdge_px;
+}
+
 FrameDensity DensityOf(const ImageIndex& index, const RenderCamera& frame,
                        const std::optional<DepthRange>& depths) {
   FrameDensity density;

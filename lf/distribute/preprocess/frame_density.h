@@ -45,6 +45,13 @@ struct FrameDensity {
   double DepthOfMost_w() const;
 };
 
+// Largest distance, in elements, at which two copies of an edge still look like one edge.
+inline constexpr double kDoubleEdge_px = 2;
+
+// Returns true if virtual LF images would help a frame (lfdensify): neighbouring LF cameras show
+// the ends of the scene as double edges, and the light field has no virtual LF images yet.
+bool WantsVirtual(const FrameDensity& density, bool has_virtual);
+
 // Measures the density for a frame. If the depths are not known, or there are no LF cameras around
 // the lens, it assumes depths from 0.75 to 1.25 times the focus distance.
 //   depths  depths of the scene, along the optical axes of the LF cameras; unset: not known

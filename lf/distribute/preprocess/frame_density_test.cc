@@ -70,6 +70,16 @@ TEST(FrameDensity, CountsRecordedCamerasAlone) {
             recorded.cameras_in_lens);
 }
 
+TEST(WantsVirtual, IfCopiesAreSeenAndThereAreNoVirtualLfImages) {
+  FrameDensity density;
+  density.near_displacement_px = 1.9;
+  density.far_displacement_px = 1;
+  EXPECT_FALSE(WantsVirtual(density, false));
+  density.far_displacement_px = 2.1;
+  EXPECT_TRUE(WantsVirtual(density, false));
+  EXPECT_FALSE(WantsVirtual(density, true));
+}
+
 TEST(FrameDensity, OfAFrameBeforeTheGrid) {
   const LightField grid = Grid();
   const ImageIndex index(grid);

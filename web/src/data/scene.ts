@@ -45,7 +45,7 @@ export interface SceneFacts {
   };
   path: PathHead;
   path_file: string;
-  commands: { forecast: string; render: string; packages: string }; // of a POSIX shell, one a line
+  commands: { forecast: string; render: string; packages: string; densify: string }; // of a POSIX shell, one a line
   packages: { name: string; frames: number[] }[];
   packages_note: string;
   watch: string;
@@ -71,6 +71,7 @@ export interface DensityFacts {
   depths_known: boolean;
   near_displacement_px: number | null;
   far_displacement_px: number | null;
+  copies_px: number | null; // distance of copies, if virtual LF images would help; otherwise null
 }
 
 export interface CameraFacts {

@@ -4,6 +4,7 @@
 
 import { fNumber, type FrameCamera } from "../data/frame_camera";
 import type { LiveFacts } from "../data/live_picture";
+import type { DensityFacts } from "../data/scene";
 import { element } from "../element";
 import type { State } from "../state";
 import { bytes, byteSize, length, millimetres, percent, plural, precise, shortNumber } from "../words";
@@ -34,7 +35,21 @@ export function statusOf(state: State, camera: FrameCamera, facts: LiveFacts): H
     const level = levelOf(worst.elements);
     if (level !== "none") parts.push(part("edges", edgesText(worst, level), level, EDGES_HELP));
   }
+  const copies = copiesText(state.density, state.scene.commands.densify, state.isChanged);
+  if (copies)
+    parts.push(element("span", { "data-part": "copies", "data-level": "gentle", title: COPIES_HELP }, copies));
   return parts;
+}
+
+const COPIES_HELP =
+  "LF cameras stand too far apart for this lens, so that what is out of focus appears as copies. The live picture does " +
+  "not make virtual LF images. The command makes them, and renders the film with them.";
+
+// Says which command fills the lens with virtual LF images; null if they would not help, or cannot be made.
+export function copiesText(density: DensityFacts | null, command: string, isChanged: boolean): string | null {
+  if (!density?.copies_px || !command) return null;
+  const saved = isChanged ? "save the path, and then " : "";
+  return `copies ${precise(density.copies_px, 2)} elements apart: ${saved}${command} fills the lens`;
 }
 
 const EDGES_HELP =

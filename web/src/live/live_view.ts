@@ -29,6 +29,7 @@ export class LiveView {
   private readonly requests = new LiveRequests((isStill, isNewest) => this.ask(isStill, isNewest));
   private readonly listeners: (() => void)[] = [];
   private pictureFault = "";
+  private shownCamera: FrameCamera | null = null; // of the picture that is shown
   private version = 0; // number of pictures shown so far
   private wanted = ""; // path of the newest picture that was wanted
 
@@ -43,6 +44,7 @@ export class LiveView {
     state.on(["exposure"], () => this.draw());
     state.on(["live"], () => this.requests.loaded());
     state.on(["text"], () => this.tellFault());
+    state.on(["text", "density"], () => this.tellStatus());
     document.addEventListener("visibilitychange", () => this.startOrStop());
     let width = 0;
     new ResizeObserver(() => {
@@ -132,7 +134,8 @@ export class LiveView {
       ++this.version;
       Object.assign(this.canvas.dataset, { still: isStill, focus: camera.focusDistance, by: picture.by });
       this.draw();
-      this.status.replaceChildren(...statusOf(state, camera, this.shown.facts));
+      this.shownCamera = camera;
+      this.tellStatus();
       for (const listener of this.listeners) listener();
     } catch (error) {
       if (!isNewest()) return true;
@@ -140,6 +143,11 @@ export class LiveView {
     }
     this.tellFault();
     return true;
+  }
+
+  private tellStatus(): void {
+    if (this.shown && this.shownCamera)
+      this.status.replaceChildren(...statusOf(this.state, this.shownCamera, this.shown.facts));
   }
 
   private tellFault(): void {

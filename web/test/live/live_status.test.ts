@@ -3,7 +3,8 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import type { LiveFacts } from "../../src/data/live_picture";
-import { memoryText } from "../../src/live/live_status";
+import type { DensityFacts } from "../../src/data/scene";
+import { copiesText, memoryText } from "../../src/live/live_status";
 import { bytes, byteSize } from "../../src/words";
 
 test("sizes are rounded up, and can be given to the programs", () => {
@@ -17,4 +18,17 @@ test("sizes are rounded up, and can be given to the programs", () => {
 test("a memory limit is shown with what all LF images need", () => {
   const facts = { wanted: 109, needed: 729, memory_bytes: 512 * 1024 ** 2, image_bytes: 4_900_000 } as LiveFacts;
   assert.equal(memoryText(facts), "109 of 729 LF images: memory limit 512 MiB; all need --live-memory 3.4G");
+});
+
+test("copies that are far apart are shown with the command that fills the lens", () => {
+  const density = { copies_px: 31.4 } as DensityFacts;
+  const command = "lfrenderer capture path.yaml --densify -o frames";
+  assert.equal(copiesText(density, command, false), `copies 31 elements apart: ${command} fills the lens`);
+  assert.equal(
+    copiesText(density, command, true),
+    `copies 31 elements apart: save the path, and then ${command} fills the lens`,
+  );
+  assert.equal(copiesText(density, "", false), null);
+  assert.equal(copiesText({ copies_px: null } as DensityFacts, command, false), null);
+  assert.equal(copiesText(null, command, false), null);
 });

@@ -2,6 +2,7 @@
 // Tests the page of a densified light field: virtual LF cameras differ from recorded ones, and a preview shows the
 // picture with or without virtual LF images.
 import assert from "node:assert/strict";
+import { readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 import { test } from "node:test";
 
@@ -80,6 +81,46 @@ test("the live picture is made with or without virtual LF images", async () => {
   await withPage([field, path], async (page) => {
     await openLive(page);
     assert.equal(await page.locator("button:text-is('Recorded alone'):visible").count(), 0);
+  });
+});
+
+test("copies of a sparse light field are shown with the command that fills the lens, which works", async () => {
+  const field = join(temporary.folder, "sparse");
+  const path = `${field}.yaml`;
+  await run("lfsynth", ["still-life", "-o", field, "--count", "16", "--size", "192x144", "--spacing", "0.03", "-q"]);
+  await run("lfexample", [field, "-o", path, "--move", "static", "-q"]);
+  await writeFile(
+    path,
+    (await readFile(path, "utf8")).replace(/aperture_diameter: \S+/, "aperture_diameter: 0.06"),
+  );
+  const line = "[data-part=copies]";
+  let command;
+  await withPage([field, path], async (page) => {
+    await openLive(page);
+    await allLoaded(page);
+    await page.waitForSelector(line);
+    [, command] = /elements apart: (lfrenderer .* --densify -o frames) fills the lens$/.exec(
+      await page.textContent(line),
+    );
+    assert.equal(await page.evaluate("lfvisualizer.state.scene.commands.densify"), command);
+    await page.click("#commands");
+    await page.waitForSelector(`dialog pre:has-text("--densify")`);
+  });
+  const frames = join(temporary.folder, "frames");
+  await run("lfrenderer", [
+    ...command
+      .replace(/ -o frames$/, "")
+      .split(" ")
+      .slice(1),
+    "-o",
+    frames,
+    "-q",
+  ]);
+  await withPage([join(frames, "densified.lfs"), path], async (page) => {
+    await openLive(page);
+    await allLoaded(page);
+    assert.ok(await page.evaluate("lfvisualizer.live.view.shown.facts.images > 16"));
+    assert.equal(await page.locator(line).count(), 0);
   });
 });
 
