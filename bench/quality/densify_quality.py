@@ -11,7 +11,9 @@ SHARED   folder with groundtruth/ (as for quality.py), data/blender-shop and dat
 GROUP    planar    ground truth: every 2nd, 4th and 8th column and row of `planar`, and some at random
          band      ground truth: every 2nd, 4th and 8th column and 2nd row of `band`
          scenes    scenes of lfsynth against true pictures
-         around    scenes of lfsynth, photographed from all around, against true pictures
+         around    scenes of lfsynth, photographed on domes and tracks around them, against true pictures
+         turntables  scenes of lfsynth with alpha, photographed in a circle, against true pictures
+         orbits    films within such domes and tracks, against true films
          shop      blender-shop against the frames of all 729 LF images
          cards     stanford-cards against the frames of all 81 LF images
          spoiled   ground truth, with noise, wrong exposures, poses and depths, and an object that moves
@@ -213,6 +215,31 @@ def turntables(bench):
     return table
 
 
+def orbits(bench):
+    """Films whose camera moves between the photographs; errors that change from frame to frame flicker."""
+    frames, seen = 9, 10  # a change by this many of 255 is seen
+    table = lens_weights.Table("scene", "photographs", "degrees apart", "film", "PSNR", "flicker, rms",
+                               "elements that flicker, %")
+    for scene, name, cameras, degrees in (("still-life", "dome", drawn.dome, 8), ("still-life", "dome", drawn.dome, 12),
+                                          ("chart", "track", drawn.track, 8)):
+        folder = bench.folder / f"orbit_{scene}_{name}_{degrees}"
+        directions = cameras(degrees)
+        calibration = drawn.photographs(bench.programs, scene, directions, folder)
+        path = drawn.film(folder / "path.yaml", (-degrees / 2, 26), (degrees / 2, 26), frames, 0.04)
+        truth = np.array([255 * quality.encoded(np.clip(lens_weights.linear_exr(file), 0, 1)) for file in
+                          drawn.true_pictures(bench.programs, scene, path, folder / "true", TRUTH_SAMPLES)])
+        store, _ = bench.densify(calibration, path, *FEWER)
+        for film, source, words in (("*R*", calibration, ""), ("*V*", store, NO_GUARD), ("guarded", store, "")):
+            pictures, _ = drawn.frames_of(bench.renderer, source, path, folder / "frames", words.split())
+            error = np.array([255 * quality.encoded(np.clip(picture, 0, 1)) for picture in pictures]) - truth
+            # Errors that stay, or change evenly, do not flicker.
+            change = error[1:-1] - (error[:-2] + error[2:]) / 2
+            table.add(scene, f"{len(directions)}, {name}", degrees, film,
+                      f"{20 * np.log10(255 / rms(error)):.2f}", f"{rms(change):.2f}",
+                      f"{100 * np.mean(np.abs(change).max(axis=3) > seen):.2f}")
+    return table
+
+
 def against_all(bench, field, paths, parts):
     """Returns the table of parts of a light field, against the frames of all its LF images. LF images are reduced to
     half their size first: LF pixels are then about as large as elements, as in the ground truth.
@@ -322,8 +349,8 @@ def publish(arguments, group):
     table.publish(arguments, f"densify_quality.py {group}", record)
 
 
-GROUPS = {"planar": planar, "band": band, "scenes": scenes, "around": around, "shop": shop,
-          "cards": cards, "spoiled": spoiled, "flicker": flicker}
+GROUPS = {"planar": planar, "band": band, "scenes": scenes, "around": around, "turntables": turntables,
+          "orbits": orbits, "shop": shop, "cards": cards, "spoiled": spoiled, "flicker": flicker}
 
 
 def main():
