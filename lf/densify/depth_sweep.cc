@@ -218,7 +218,7 @@ DepthPlane SweepDepths(const WorkingImage& reference, std::span<const SweepView>
 }
 
 double ComparedShare(int width, int height) {
-  constexpr double kBands = 0.2;  // measured
+  constexpr double kBands = 0.15;  // measured
   const int divisor = ReductionOf(width, height);
   if (divisor == 1) return 1;
   return kBands + ComparedShare(width / divisor, height / divisor) / (divisor * divisor);

@@ -56,6 +56,30 @@ TEST(SweepDepths, ComparesFewDepthsInALargeImageAndFindsBothBesideOutlines) {
 
 // The sums of paths, by their definition: a plane that a pixel does not have costs nothing and is
 // on no path.
+TEST(SweepDepths, FindsTheDepthOfALargeCutOutObjectUpToItsOutline) {
+  constexpr Disk kDisk{2, 2, 1, true};
+  std::vector<WorkingImage> images;
+  for (const auto& [x, y] : {std::pair{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}})
+    images.push_back(
+        ImageOfDisk(CameraAt(x * kBaseline, y * kBaseline, kWidth, kWidth / 2), kDisk));
+  const DepthPlane plane = SweepDepths(images[0], ViewsOf(images), kRange, 40);
+  int right = 0, beside = 0, count = 0, beside_count = 0;
+  for (int y = 0; y < plane.height(); ++y)
+    for (int x = 0; x < plane.width(); ++x) {
+      const double inside_px = InsidePx(images[0].camera, kDisk, x, y);
+      if (inside_px < 1) continue;
+      const bool is_right =
+          std::abs(kRange.Of(plane.at(x, y)) - 1 / kDisk.depth) <= 0.2 / (100 * kBaseline);
+      right += is_right;
+      ++count;
+      if (inside_px > 8) continue;
+      beside += is_right;
+      ++beside_count;
+    }
+  EXPECT_GT(right, 0.98 * count);
+  EXPECT_GT(beside, 0.9 * beside_count);
+}
+
 // Cost of a plane that a pixel does not have.
 constexpr int kNone = 1 << 20;
 constexpr int kPlanes = 12, kColumns = 11, kRows = 7, kSide = 4;
