@@ -87,13 +87,13 @@ HWY_ATTR void Interpolate(const Places& places, int count, const TonesView& view
   }
 }
 
-// Writes the costs of samples: 4 times the sum of the absolute differences of the tones. Four
+// Writes the costs of samples: kPerTone times the sum of the absolute differences of tones. Four
 // fields of a word are computed at once, as in Interpolate().
 HWY_ATTR void CompareSamples(const uint64_t* HWY_RESTRICT samples,
                              const uint64_t* HWY_RESTRICT wanted, int count,
                              uint64_t* HWY_RESTRICT costs) {
   constexpr uint64_t kOnes = 0x0001000100010001ULL, kBytes = 0x00ff00ff00ff00ffULL;
-  constexpr uint64_t kMost = MatchingCosts::kMostDifference;
+  constexpr uint64_t kMost = MatchingCosts::kMostDifference, kPerTone = MatchingCosts::kPerTone;
   for (int i = 0; i < count; ++i) {
     // A field is 256 + a - b. Its bit 8 is 0 if a < b; its lower bits are then 256 - (b - a).
     const uint64_t difference = (samples[i] | kOnes << 8) - wanted[i];
@@ -102,7 +102,7 @@ HWY_ATTR void CompareSamples(const uint64_t* HWY_RESTRICT samples,
         ((difference & kBytes) ^ ((is_negative << 8) - is_negative)) + is_negative;
     const uint64_t pairs = absolute + (absolute >> 32);
     const uint64_t sum = (pairs + (pairs >> 16)) & 0xffff;
-    costs[i] = (sum < kMost ? sum : kMost) * 4;
+    costs[i] = (sum < kMost ? sum : kMost) * kPerTone;
   }
 }
 
