@@ -131,13 +131,11 @@ void AddRunning(CLI::App& app, Arguments& a) {
   lf::AddStoreRestart(running, a.resume, a.overwrite);
   lf::AddDepthCache(running, a.cache);
   running
-      .Add(
-          "--memory SIZE", a.memory,
-          "Memory for LF images that are kept (2G)\n"
-          "On top come 4 bytes of depths for each pixel of all LF images, and for each thread up "
-          "to "
-          "200 MB and the LF images that it compares: up to nine, of 16 bytes for each pixel. With "
-          "--divisor N, a pixel is N x N of those.")
+      .Add("--memory SIZE", a.memory,
+           "Memory for LF images that are kept (2G)\n"
+           "On top come 4 bytes of depths for each pixel of all LF images, and for each thread up "
+           "to 200 MB and the LF images that it compares: up to nine, of 27 bytes for each pixel. "
+           "With --divisor N, a pixel is N x N of those.")
       ->check(lf::NotEmpty());
 }
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Thinned and spoiled light fields for densify_quality.py, and the frames in which they are compared."""
 import json
+import pathlib
 import re
 
 import cv2
@@ -16,6 +17,11 @@ BAND = ("band_d4_f40", "band_d3_f22")
 
 def row_and_column(frame):
     return tuple(map(int, re.search(r"r(\d+)_c(\d+)", frame["file_path"]).groups()))
+
+
+def number_of(frame):
+    """Returns the last number in the name of a picture."""
+    return int(re.findall(r"\d+", pathlib.Path(frame["file_path"]).stem)[-1])
 
 
 def grid(frames, step):

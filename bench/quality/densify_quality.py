@@ -7,13 +7,16 @@ usage: densify_quality.py BIN SHARED [--only GROUP] [--write doc/densify.md]
        densify_quality.py --again JSON [--write doc/densify.md]
 
 BIN      folder of lfdensify, lfrenderer, lfimport and lfsynth
-SHARED   folder with groundtruth/ (as for quality.py), data/blender-shop and data/stanford-cards-9x9
+SHARED   folder with groundtruth/ (as for quality.py) and data/: blender-shop, stanford-cards-9x9, beer-colmap and
+         middlebury-templeRing
 GROUP    planar    ground truth: every 2nd, 4th and 8th column and row of `planar`, and some at random
          band      ground truth: every 2nd, 4th and 8th column and 2nd row of `band`
          scenes    scenes of lfsynth against true pictures
          around    scenes of lfsynth, photographed on domes and tracks around them, against true pictures
          turntables  scenes of lfsynth with alpha, photographed in a circle, against true pictures
          orbits    films within such domes and tracks, against true films
+         left-out  LF images of several captures, made of those around them
+         trust     the share of wrong elements by trust, in scenes of lfsynth photographed from all around
          shop      blender-shop against the frames of all 729 LF images
          cards     stanford-cards against the frames of all 81 LF images
          spoiled   ground truth, with noise, wrong exposures, poses and depths, and an object that moves
@@ -37,6 +40,9 @@ import lens_weights
 import quality
 from lens_weights import decibels, text
 from quality import results
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent.parent / "tests/helpers"))
+import exr_file  # noqa: E402
 
 NO_GUARD = "--no-guard --mode collect --estimator auto --lens-weights auto"
 FEWER = ("--most", 600)  # keeps the time short
@@ -151,6 +157,23 @@ def scenes(bench):
     return table
 
 
+def dome(bench, scene, count):
+    """Photographs a scene all around. Returns the calibration, and the path and true picture of a frame at one of the
+    LF cameras."""
+    calibration = bench.folder / f"{scene}_{count}" / "transforms.json"
+    synth = [bench.programs / "lfsynth", scene, "-q", "--capture", "hemisphere", "--count", count, "-o"]
+    results.call([*synth, calibration.parent, "--size", "320x240"])
+    field = quality.read_field(calibration)
+    path = captures.camera_path(field, bench.folder / f"{scene}_{count}.yaml", round(0.3 * count), 0.04, 0.85)
+    out = bench.folder / f"truth_{scene}_{count}"
+    results.call([*synth, out, "--calibration-only", "--truth", path, "--truth-samples", 400])
+    return calibration, path, lens_weights.linear_exr(next(out.rglob("frame_0001.exr")))
+
+
+def degrees_apart(count):
+    return f"{np.degrees(np.sqrt(2 * np.pi / count)):.0f}"
+
+
 def figures_of_tests(report):
     """Returns (median PSNR of LF images that lfdensify left out and made, what they are better by than a mean)."""
     tests = [test for test in report["tests"] if not test["beyond"]]
@@ -238,6 +261,87 @@ def orbits(bench):
                       f"{20 * np.log10(255 / rms(error)):.2f}", f"{rms(change):.2f}",
                       f"{100 * np.mean(np.abs(change).max(axis=3) > seen):.2f}")
     return table
+
+
+def trust(bench):
+    """The share of elements of V that are visibly wrong, by their trust. Elements without virtual light have no trust
+    to be judged."""
+    visible, few = 10, 50
+    columns, shares = [], []
+    for scene, count in (("still-life", 142), ("still-life", 92), ("lights", 142), ("chart", 142), ("foliage", 142)):
+        calibration, path, truth = dome(bench, scene, count)
+        store, _ = bench.densify(calibration, path, *FEWER)
+        columns.append(f"{scene}, {degrees_apart(count)} degrees")
+        if not store:
+            shares.append(["refused"] * 10)
+            continue
+        shown, _ = lens_weights.first_frame(bench.renderer, store, path, NO_GUARD)
+        out = bench.folder / "guarded"
+        results.call([bench.renderer, store, path, "-o", out, "--overwrite", "--format", "exr-float", "-q",
+                      "--no-contact-sheet"])
+        channels = exr_file.channels_of(out / "frame_0001.exr")
+        wrong = 255 * np.abs(quality.encoded(shown) - quality.encoded(truth)).max(axis=2) > visible
+        tenth = np.clip((10 * channels["trust"]).astype(int), 0, 9)
+        judged = (channels["densified"] > 0) | (channels["trust"] < 1)
+        of_tenths = [wrong[judged & (tenth == i)] for i in range(10)]
+        shares.append([f"{of.mean():.2f}" + (f" ({of.size})" if of.size < few else "") if of.size else "-"
+                       for of in of_tenths])
+    table = lens_weights.Table("trust", "expected", *columns)
+    for i in range(2, 10):
+        table.add(f"{i / 10:.1f} to {(i + 1) / 10:.1f}", "up to 0.1" if i == 9 else f"{0.95 - i / 10:.2f}",
+                  *(of_capture[i] for of_capture in shares))
+    return table
+
+
+def left_out(bench):
+    """The test of lfdensify, which makes LF images of those around them, on captures of several kinds. The size of
+    virtual LF images does not matter for it."""
+    table = lens_weights.Table("capture", "LF images", "left out", "degrees", "made, dB", "mean, dB", "gain, dB",
+                               "better than the mean")
+    for name, calibration, path in left_out_captures(bench):
+        _, report = bench.densify(calibration, *([path] if path else []), "--divisor", 4, "--most", 100, "--force")
+        tests = [test for test in report["tests"] if not test["beyond"]]
+        median = lambda value: f"{np.median([value(test) for test in tests]):.1f}"
+        gain = lambda test: test["virtual_psnr_db"] - test["mean_psnr_db"]
+        table.add(name, report["recorded"], len(tests), median(lambda test: test["angle_deg"]),
+                  median(lambda test: test["virtual_psnr_db"]), median(lambda test: test["mean_psnr_db"]),
+                  median(gain), f"{sum(gain(test) > 0 for test in tests)} of {len(tests)}")
+    return table
+
+
+def left_out_captures(bench):
+    """Yields (name, calibration, path or None)."""
+    data = bench.shared / "data"
+
+    def imported(name, source, *more):
+        out = bench.folder / name
+        results.call([bench.programs / "lfimport", source, "-o", out, "-q", *more])
+        return quality.read_field(out / "transforms.json")
+
+    def part(name, field, kept, number=None, diameter=0, focus=1):
+        calibration = quality.write_field(bench.folder / name.replace(" ", "_"), field, kept)
+        path = captures.camera_path(dict(field, frames=kept), bench.folder / f"{calibration.parent.name}.yaml", number,
+                                    diameter, focus) if number is not None else None
+        return name, calibration, path
+
+    can = imported("can", data / "beer-colmap/sparse", "--images", data / "beer-colmap/images")
+    is_first = lambda frame: captures.number_of(frame) in (*range(14), *range(35, 53))
+    for side, is_kept in (("A", is_first), ("B", lambda frame: not is_first(frame))):
+        kept = [frame for frame in can["frames"] if is_kept(frame)]
+        yield part(f"beer-colmap side {side}", can, kept, len(kept) // 2, 1, 4.7)
+    temple = imported("temple", data / "middlebury-templeRing/templeRing")
+    yield part("templeRing", temple, temple["frames"], 30, 0.15, 0.55)
+    shop_field = imported("shop", data / "blender-shop/images")
+    yield part("blender-shop 5 x 5", shop_field, captures.square(shop_field["frames"], (0, 6, 13, 20, 26)))
+    cards_field = captures.cards_field(data / "stanford-cards-9x9/images")
+    yield part("stanford-cards 5 x 5", cards_field, captures.square(cards_field["frames"], range(0, 9, 2)))
+    for scene, count in (("chart", 142), ("foliage", 142), ("lights", 92)):
+        calibration = bench.folder / f"{scene}_{count}" / "transforms.json"
+        results.call([bench.programs / "lfsynth", scene, "-q", "--capture", "hemisphere", "--count", count, "-o",
+                      calibration.parent, "--size", "320x240", "--format", "png"])
+        field = quality.read_field(calibration)
+        noisy = captures.with_noise(field["frames"], bench.folder / f"noise_{scene}_{count}")
+        yield part(f"{scene} {degrees_apart(count)} degrees with noise", field, noisy, round(0.3 * count), 0.3, 0.85)
 
 
 def against_all(bench, field, paths, parts):
@@ -350,7 +454,8 @@ def publish(arguments, group):
 
 
 GROUPS = {"planar": planar, "band": band, "scenes": scenes, "around": around, "turntables": turntables,
-          "orbits": orbits, "shop": shop, "cards": cards, "spoiled": spoiled, "flicker": flicker}
+          "orbits": orbits, "left-out": left_out, "trust": trust, "shop": shop, "cards": cards, "spoiled": spoiled,
+          "flicker": flicker}
 
 
 def main():

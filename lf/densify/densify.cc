@@ -34,7 +34,7 @@ namespace {
 
 // Is changed whenever the same light field and options give other virtual LF images or trust, so
 // that an unfinished store of an older program is not resumed.
-constexpr int kDensifyVersion = 6;
+constexpr int kDensifyVersion = 7;
 
 std::string SettingsInWords(const DensifyPlan& plan, const DensifyChoices& choices) {
   return fmt::format(

@@ -41,7 +41,7 @@ int CostByDefinition(const WorkingImage& reference, std::span<const SweepView> v
   const auto difference = [&](const SweepView& view, int i, int j) {
     const PairMap::Place place =
         view.from_reference.At(static_cast<float>(i) + 0.5f, static_cast<float>(j) + 0.5f, z);
-    const Image<uint16_t>& tones = view.image->tones;
+    const Image<uint16_t>& tones = view.image->compared;
     const float u = place.u_px - 0.5f, v = place.v_px - 0.5f;
     const auto width = static_cast<float>(tones.width()),
                height = static_cast<float>(tones.height());
@@ -58,9 +58,9 @@ int CostByDefinition(const WorkingImage& reference, std::span<const SweepView> v
         return (tones.at(at, top, c) * (32 - below) + tones.at(at, top + 1, c) * below) >> 2;
       };
       const int tone = (column(left) * (32 - right) + column(left + 1) * right) >> 8;
-      sum += std::abs(tone - reference.tones.at(i, j, c));
+      sum += std::abs(tone - reference.compared.at(i, j, c));
     }
-    return 4 * std::min(sum, MatchingCosts::kMostDifference);
+    return MatchingCosts::kPerTone * std::min(sum, MatchingCosts::kMostDifference);
   };
   std::vector<int> means;
   for (const SweepView& view : views) {
@@ -177,18 +177,20 @@ TEST(SemiGlobal, ChoosesThePlaneOfTheLeastSumOnAllInstructionSets) {
   });
 }
 
-// Returns the share of pixels whose depth is right, within a tenth of a pixel of shift.
+// Returns the share of pixels whose depth is right, within a tenth of a pixel of shift. Pixels at
+// the border do not count, where the means of ComparedTones() are those of other surroundings.
 double RightShare(const DepthPlane& plane, const PinholeCamera& camera,
                   const std::vector<Wall>& walls) {
   constexpr double kTolerance = 0.1 / (100 * kBaseline);
-  int right = 0;
-  for (int y = 0; y < plane.height(); ++y)
-    for (int x = 0; x < plane.width(); ++x) {
+  constexpr int kBorder = 4;
+  int right = 0, all = 0;
+  for (int y = kBorder; y < plane.height() - kBorder; ++y)
+    for (int x = kBorder; x < plane.width() - kBorder; ++x, ++all) {
       Vec3 point;
       const Wall* wall = WallAt(camera, walls, x + 0.5, y + 0.5, &point);
       if (std::abs(kRange.Of(plane.at(x, y)) - 1 / wall->depth) <= kTolerance) ++right;
     }
-  return right / (static_cast<double>(plane.width()) * plane.height());
+  return static_cast<double>(right) / all;
 }
 
 TEST(SweepDepths, FindsTheDepthOfATexturedWall) {

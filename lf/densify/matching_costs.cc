@@ -102,11 +102,11 @@ void ComputeMatchingCosts(const WorkingImage& reference, std::span<const SweepVi
   ThreeRows differences(views.size(), planes, width);
   const auto compare = [&](int y) {
     for (size_t v = 0; v < views.size(); ++v) {
-      const Image<uint16_t>& tones = views[v].image->tones;
+      const Image<uint16_t>& tones = views[v].image->compared;
       for (int plane = 0; plane < planes; ++plane) {
         if (std::isnan(depths[plane])) continue;
         uint16_t* row = differences.Row(v, plane, y);
-        CompareRow(reference.tones.row(y) + static_cast<size_t>(x_begin) * LfPixels::kRgbLanes,
+        CompareRow(reference.compared.row(y) + static_cast<size_t>(x_begin) * LfPixels::kRgbLanes,
                    x_begin, y, x_end - x_begin, views[v].from_reference, depths[plane],
                    {tones.row(0), tones.width(), tones.height()},
                    row + (x_begin - rect.x_begin + 1));

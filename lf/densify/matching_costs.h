@@ -25,10 +25,10 @@ SweepView ViewFrom(const WorkingImage& reference, const WorkingImage& image);
 
 // Costs of a rectangle of pixels at a sequence of inverse depths.
 struct MatchingCosts {
-  // Largest cost: the mean of 3 x 3 differences of tones, each the sum over R, G and B and limited
-  // to kMostDifference, in steps of 1/4.
-  static constexpr int kMostDifference = 60;
-  static constexpr int kMost = 4 * kMostDifference;
+  // Largest cost: the mean of 3 x 3 differences of ComparedTones(), each the sum over R, G and B
+  // and limited to kMostDifference, in steps of 1 / kPerTone.
+  static constexpr int kMostDifference = 80, kPerTone = 3;
+  static constexpr int kMost = kPerTone * kMostDifference;
   // Cost of an inverse depth at which a pixel cannot be, because another LF image sees nothing
   // there.
   static constexpr int kCarved = 255;

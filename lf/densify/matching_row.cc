@@ -90,13 +90,13 @@ HWY_ATTR void Interpolate(const Places& places, int count, const TonesView& view
   }
 }
 
-// Writes the costs of samples: 4 times the sum of the absolute differences of the tones. Four
+// Writes the costs of samples: kPerTone times the sum of the absolute differences of tones. Four
 // fields of a word are computed at once, as in Interpolate().
 HWY_ATTR void CompareSamples(const uint64_t* HWY_RESTRICT samples,
                              const uint64_t* HWY_RESTRICT wanted, int count,
                              uint64_t* HWY_RESTRICT costs) {
   constexpr uint64_t kOnes = 0x0001000100010001ULL, kBytes = 0x00ff00ff00ff00ffULL;
-  constexpr uint64_t kMost = MatchingCosts::kMostDifference;
+  constexpr uint64_t kMost = MatchingCosts::kMostDifference, kPerTone = MatchingCosts::kPerTone;
   for (int i = 0; i < count; ++i) {
     // A field is 256 + a - b. Its bit 8 is 0 if a < b; its lower bits are then 256 - (b - a).
     const uint64_t difference = (samples[i] | kOnes << 8) - wanted[i];
@@ -105,7 +105,7 @@ HWY_ATTR void CompareSamples(const uint64_t* HWY_RESTRICT samples,
         ((difference & kBytes) ^ ((is_negative << 8) - is_negative)) + is_negative;
     const uint64_t pairs = absolute + (absolute >> 32);
     const uint64_t sum = (pairs + (pairs >> 16)) & 0xffff;
-    costs[i] = (sum < kMost ? sum : kMost) * 4;
+    costs[i] = (sum < kMost ? sum : kMost) * kPerTone;
   }
 }
 
@@ -148,7 +148,7 @@ HWY_ATTR void Interpolate(const Places& places, int count, const TonesView& view
   }
 }
 
-// Writes the costs of samples: 4 times the sum of the absolute differences of the tones.
+// Writes the costs of samples: kPerTone times the sum of the absolute differences of the tones.
 HWY_ATTR void CompareSamples(const uint64_t* HWY_RESTRICT samples,
                              const uint64_t* HWY_RESTRICT wanted, int count,
                              uint64_t* HWY_RESTRICT costs) {
@@ -156,13 +156,14 @@ HWY_ATTR void CompareSamples(const uint64_t* HWY_RESTRICT samples,
   const hn::Repartition<uint8_t, decltype(d)> d8;
   const hn::Repartition<uint16_t, decltype(d)> d16;
   const auto most = hn::Set(d16, uint16_t{MatchingCosts::kMostDifference});
+  const auto per_tone = hn::Set(d16, uint16_t{MatchingCosts::kPerTone});
   // Arrays have kChunk samples, so that the last vector may reach beyond `count`.
   for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
     const auto a = hn::BitCast(d8, hn::Load(d, samples + i));
     const auto b = hn::BitCast(d8, hn::Load(d, wanted + i));
     const auto sums = hn::SumsOf8(hn::Or(hn::SaturatedSub(a, b), hn::SaturatedSub(b, a)));
-    const auto limited = hn::ShiftLeft<2>(hn::Min(hn::BitCast(d16, sums), most));
-    hn::Store(hn::BitCast(d, limited), d, costs + i);
+    const auto scaled = hn::Mul(hn::Min(hn::BitCast(d16, sums), most), per_tone);
+    hn::Store(hn::BitCast(d, scaled), d, costs + i);
   }
 }
 

@@ -18,9 +18,11 @@ struct TonesView {
 };
 
 // Compares pixels x_begin ... x_begin + count - 1 of row y of the reference image with a view, at
-// inverse depth z. costs[i] is 4 times the sum of the absolute differences of R, G and B, at most
-// MatchingCosts::kMost; 7/12 of this if the view does not show the pixel.
-//   reference  tones of the first pixel
+// inverse depth z. costs[i] is MatchingCosts::kPerTone times the sum of the absolute differences of
+// R, G, B and opacity, at most MatchingCosts::kMost; 7/12 of this if the view does not show the
+// pixel.
+//   reference  ComparedTones() of the first pixel
+//   view       ComparedTones()
 void CompareRow(const uint16_t* reference, int x_begin, int y, int count, const PairMap& map,
                 float z, const TonesView& view, uint16_t* costs);
 

@@ -10,6 +10,7 @@
 
 #include "lf/camera/pinhole.h"
 #include "lf/core/test_value_noise.h"
+#include "lf/densify/compared_tones.h"
 #include "lf/densify/working_image.h"
 #include "lf/storage/load/recorded_image.h"
 
@@ -57,6 +58,7 @@ inline WorkingImage ImageOfWalls(const PinholeCamera& camera, const std::vector<
       image.light.at(x, y, 3) = kOpaqueOpacity;
       image.tones.at(x, y, 3) = 255;
     }
+  image.compared = ComparedTones(image.tones);
   return image;
 }
 
@@ -99,6 +101,7 @@ inline WorkingImage ImageOfDisk(const PinholeCamera& camera, const Disk& disk) {
       image.tones.at(x, y, 3) =
           static_cast<uint16_t>(kTransparentTone + (255 - kTransparentTone) * opacity + 0.5);
     }
+  image.compared = ComparedTones(image.tones);
   image.empty = EmptyPixels(image.tones);
   return image;
 }

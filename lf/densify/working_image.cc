@@ -8,6 +8,7 @@
 
 #include "lf/camera/distortion.h"
 #include "lf/densify/bicubic.h"
+#include "lf/densify/compared_tones.h"
 #include "lf/storage/load/recorded_image.h"
 
 namespace lf {
@@ -80,7 +81,7 @@ uint16_t OpacityTone(uint16_t opacity) {
 }  // namespace
 
 bool IsTransparent(const uint16_t* tones) {
-  constexpr int kFaintOpacity = 3, kFaintTone = 40;  // 1.6 %, and light of 0.02
+  constexpr int kFaintOpacity = 3, kFaintTone = 40;  // 1.7 %, and light of 0.02
   const uint16_t opacity = tones[LfPixels::kRayLane];
   return opacity != 0 && opacity <= kTransparentTone + kFaintOpacity && tones[0] <= kFaintTone &&
          tones[1] <= kFaintTone && tones[2] <= kFaintTone;
@@ -161,6 +162,7 @@ WorkingImage WorkingImageOf(const PinholeCamera& lf_camera, const LfPixels& pixe
     for (int lane = 0; lane < LfPixels::kRayLane; ++lane) tones[lane] = curve.Tone(light[lane]);
     tones[LfPixels::kRayLane] = OpacityTone(light[LfPixels::kRayLane]);
   }
+  image.compared = ComparedTones(image.tones);
   image.empty = EmptyPixels(image.tones);
   return image;
 }
@@ -169,6 +171,7 @@ WorkingImage ReducedTones(const WorkingImage& image, int divisor) {
   WorkingImage reduced;
   reduced.camera = WorkingCamera(image.camera, divisor);
   reduced.tones = Reduced(image.tones, divisor);
+  reduced.compared = ComparedTones(reduced.tones);
   reduced.empty = EmptyPixels(reduced.tones);
   return reduced;
 }

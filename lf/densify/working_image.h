@@ -22,10 +22,11 @@ struct WorkingImage {
   // RecordedImage::opacities: kOpaqueOpacity if nothing is seen through the pixel, 0 in all four
   // lanes if it is masked.
   Image<uint16_t> light;
-  // [height][width][4], for comparing: R, G, B from 0 to 255 on a tone curve, and the opacity from
+  // [height][width][4]: R, G, B from 0 to 255 on a tone curve, and the opacity from
   // kTransparentTone to 255; all 0 if the pixel is masked. A masked pixel is unknown, and a
   // transparent one is known to show nothing: these differ as much as any two pixels.
   Image<uint16_t> tones;
+  Image<uint16_t> compared = {};  // ComparedTones() of `tones`, for costs of matches
   // [height][width]: 1 if the pixel and the eight around it are transparent, otherwise 0. Nothing
   // is along the ray of such a pixel, also if its LF camera is a little wrong. Empty if there is
   // no such pixel.
@@ -35,7 +36,7 @@ struct WorkingImage {
   int height() const { return tones.height(); }
 };
 
-inline constexpr int kTransparentTone = 64;
+inline constexpr int kTransparentTone = 80;
 // Returns true if a pixel is not masked and shows next to nothing.
 //   tones  its four tones
 bool IsTransparent(const uint16_t* tones);

@@ -5,7 +5,8 @@ namespace lf {
 namespace {
 
 size_t BytesOf(const WorkingImage& image) {
-  return image.light.size_bytes() + image.tones.size_bytes() + image.empty.size_bytes();
+  return image.light.size_bytes() + image.tones.size_bytes() + image.compared.size_bytes() +
+         image.empty.size_bytes();
 }
 
 }  // namespace

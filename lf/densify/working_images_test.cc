@@ -11,8 +11,9 @@ namespace lf {
 namespace {
 
 constexpr int kSide = 8;
-// The size of one working image: light and tones, each [kSide][kSide][4] numbers of 16 bits.
-constexpr size_t kImageBytes = size_t{kSide} * kSide * 4 * 2 * 2;
+// The size of one working image: light, tones and compared tones, each [kSide][kSide][4] numbers
+// of 16 bits.
+constexpr size_t kImageBytes = size_t{kSide} * kSide * 4 * 2 * 3;
 
 LightField FourCameras() {
   LightField field;

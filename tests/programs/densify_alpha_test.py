@@ -167,11 +167,11 @@ class DensifyAlphaTest(ProgramTestCase):
     def small(self, alpha="straight"):
         folder = self.folder / f"small-{alpha}"
         folder.mkdir()
-        return Scene(folder, "still-life", alpha, size="80x60", most=20)
+        return Scene(folder, "still-life", alpha, size="80x60", most=30)
 
     def densify(self, scene, *options):
         store = self.folder / "again.lfs"
-        self.succeeds(DENSIFY, scene.field, "-o", store, "--most", 20, "--overwrite", *options)
+        self.succeeds(DENSIFY, scene.field, "-o", store, "--most", 30, "--overwrite", *options)
         return store
 
     def test_the_store_has_alpha_whatever_the_background_is(self):
@@ -193,7 +193,7 @@ class DensifyAlphaTest(ProgramTestCase):
         packed = self.folder / "packed.lfs"
         self.succeeds(COMPRESSOR, scene.field, "-o", packed, "--profile", "lossless")
         store = self.folder / "of_store.lfs"
-        self.succeeds(DENSIFY, packed, "-o", store, "--most", 20)
+        self.succeeds(DENSIFY, packed, "-o", store, "--most", 30)
         self.assertEqual(contents(store), contents(scene.store))
 
     def test_lfrenderer_densifies_and_renders_in_one_call(self):
@@ -222,7 +222,7 @@ class DensifyAlphaTest(ProgramTestCase):
     def test_a_store_that_was_killed_and_interrupted_ends_with_the_same_bits(self):
         scene = self.small()
         again, unfinished = self.folder / "again.lfs", self.folder / "again.lfs.unfinished"
-        call = [str(word) for word in (DENSIFY, scene.field, "-o", again, "--most", 20, "--threads", 1, "--resume")]
+        call = [str(word) for word in (DENSIFY, scene.field, "-o", again, "--most", 30, "--threads", 1, "--resume")]
         for stop in signal.SIGKILL, signal.SIGINT:
             process = subprocess.Popen(call, stderr=subprocess.DEVNULL)
             size = unfinished.stat().st_size if unfinished.exists() else 0

@@ -199,13 +199,14 @@ class DensifyTest(ProgramTestCase):
                 shutil.rmtree(self.field, ignore_errors=True)
                 self.synth(*options)
                 lossy, dense = self.pack("default"), self.folder / "of_store.lfs"
-                self.succeeds(DENSIFY, lossy, "-o", dense, "--most", 60, "--overwrite")
+                depths = ("--depths", 0.35, 6)  # the same virtual LF cameras for both
+                self.succeeds(DENSIFY, lossy, "-o", dense, "--most", 60, "--overwrite", *depths)
                 virtual = {row[0]: row[1:] for row in contents(dense)[0]}
                 with sqlite3.connect(f"file:{lossy}?immutable=1", uri=True) as database:
                     for id, code, mask in database.execute("select id, code, mask from blobs"):
                         self.assertEqual(virtual[id], (code, mask))
                 path = self.write_path()
-                self.densify("--overwrite")
+                self.densify("--overwrite", *depths)
                 guard = ("--no-guard",) if options else ()
                 self.assertGreater(psnr(self.render(dense, path, *guard), self.render(self.store, path, *guard)), 38)
                 lossy.unlink()
