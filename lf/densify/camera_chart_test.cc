@@ -101,7 +101,7 @@ TEST(FarEnoughApart, LeavesOutWhatIsNearToOthers) {
     EXPECT_TRUE(std::any_of(ids.begin(), ids.end(), [&](uint32_t other) {
       return apart_deg(id, other) <= kLeastApart_deg;
     })) << id;
-  // Those that are left out are compared with others.
+  // LF cameras that are left out are compared with others.
   const auto chosen = CompareWith(ring, ids, Vec3::Zero());
   for (uint32_t id = 0; id < ring.size(); ++id) {
     EXPECT_GE(chosen[id].size(), 4u) << id;
