@@ -89,10 +89,7 @@ test("copies of a sparse light field are shown with the command that fills the l
   const path = `${field}.yaml`;
   await run("lfsynth", ["still-life", "-o", field, "--count", "16", "--size", "192x144", "--spacing", "0.03", "-q"]);
   await run("lfexample", [field, "-o", path, "--move", "static", "-q"]);
-  await writeFile(
-    path,
-    (await readFile(path, "utf8")).replace(/aperture_diameter: \S+/, "aperture_diameter: 0.06"),
-  );
+  await writeFile(path, (await readFile(path, "utf8")).replace(/aperture_diameter: \S+/, "aperture_diameter: 0.06"));
   const line = "[data-part=copies]";
   let command;
   await withPage([field, path], async (page) => {
