@@ -51,9 +51,9 @@ def row_of(programs, scene, directions, is_cut_out, folder):
     middle = len(directions) // 2
     between = np.mean([directions[middle], directions[middle + 1]], axis=0)
     path = drawn.film(folder / "path.yaml", between, between, 1, DIAMETER)
-    true = drawn.true_pictures(programs, scene, path, folder / "true", 400, "straight" if is_cut_out else "none")[0]
+    true = drawn.true_pictures(programs, scene, path, folder / "true", 144, "straight" if is_cut_out else "none")[0]
     store = folder / "film.lfs"
-    results.call([programs / "lfdensify", calibration, path, "-o", store, "-q", "--cache", "none"])
+    results.call([programs / "lfdensify", calibration, path, "-o", store, "-q", "--cache", "none", "--most", 600])
     files = [true]
     for name, source in (("recorded", calibration), ("densified", store)):
         drawn.frames_of(programs / "lfrenderer", source, path, folder / name, ())
@@ -87,7 +87,7 @@ def main():
             tile = cv2.resize(picture[..., ::-1], (TILE[0] - 4, TILE[1] - 4), interpolation=cv2.INTER_AREA)
             left = SIDE + column * TILE[0]
             sheet[top:top + TILE[1] - 4, left:left + TILE[0] - 4] = np.clip(tile + 0.5, 0, 255)
-    cv2.imwrite(str(options.output), sheet, [cv2.IMWRITE_JPEG_QUALITY, 84])
+        cv2.imwrite(str(options.output), sheet, [cv2.IMWRITE_JPEG_QUALITY, 84])
     return 0
 
 
