@@ -115,9 +115,9 @@ Result<VotedDepths> VoteDepths(const LightField& light_field, const LfImageStore
   constexpr double kEqual_elements = 1.25;
   const auto refusal = [&](size_t count) {
     return UsageError(fmt::format(
-        "{{from store}}: {} has the depths of {} recorded LF images near the camera, expected at "
-        "least {}: give a densified store (lfdensify), or leave out this option",
-        light_field.folder.string(), count, kLeastVoters));
+        "{{from store}}: the light field has the depths of {} recorded LF images near the camera, "
+        "expected at least {}: give a densified store (lfdensify), or leave out this option",
+        count, kLeastVoters));
   };
   if (!store.LoadsDepths()) return refusal(0);
   std::vector<std::pair<double, uint32_t>> order;
