@@ -11,20 +11,11 @@
 
 #include "lf/core/catmull_rom.h"
 #include "lf/core/image.h"
+#include "lf/densify/pixel_lanes.h"
 #include "lf/light_field/model/lf_pixels.h"
 #include "lf/storage/load/recorded_image.h"
 
 namespace lf {
-
-// Four lanes of a pixel, which the compiler computes with at once.
-using PixelLanes [[gnu::vector_size(16)]] = float;
-
-inline PixelLanes LanesOf(const uint16_t* pixel) {
-  using Stored [[gnu::vector_size(8)]] = uint16_t;
-  Stored stored;
-  std::memcpy(&stored, pixel, sizeof(stored));
-  return __builtin_convertvector(stored, PixelLanes);
-}
 
 // Interpolates as SampleBicubic() between pixels none of which is masked. Returns false if one is.
 //   first  of the lanes of the first of four pixels in each row

@@ -100,6 +100,7 @@ class Densifier {
   void LeaveOutDoneWork();
   Result<void> FindDepths();
   Result<void> AddRecorded(LfImageId id);
+  std::unique_ptr<SynthesisMemory> TakeMemory();
   Result<void> AddVirtual(const RecordedValues& values, size_t i);
   // Makes kind_ hold the values of a recorded LF image.
   void Hold(const StoredKind& kind);
@@ -133,6 +134,7 @@ class Densifier {
 
   std::mutex mutex_;  // guards all members below
   DensifyReport report_;
+  std::vector<std::unique_ptr<SynthesisMemory>> spare_;  // that no thread uses
   StoredKind kind_;  // kind that holds the values of all recorded LF images
 };
 
@@ -402,6 +404,14 @@ Result<void> Densifier::AddRecorded(LfImageId id) {
   return writer_->Add(id, image);
 }
 
+std::unique_ptr<SynthesisMemory> Densifier::TakeMemory() {
+  const std::lock_guard lock(mutex_);
+  if (spare_.empty()) return std::make_unique<SynthesisMemory>();
+  std::unique_ptr<SynthesisMemory> memory = std::move(spare_.back());
+  spare_.pop_back();
+  return memory;
+}
+
 Result<void> Densifier::AddVirtual(const RecordedValues& values, size_t i) {
   const LfImageId id{static_cast<uint32_t>(light_field_.size() + i)};
   if (writer_->Has(id)) return {};
@@ -414,8 +424,9 @@ Result<void> Densifier::AddVirtual(const RecordedValues& values, size_t i) {
   for (size_t k = 0; k < ids.size(); ++k)
     sources.push_back(
         {loaded[k].get(), &depths_->Of(ids[k]), static_cast<float>(wanted.sources[k].weight)});
-  const VirtualImage image =
-      Synthesize(wanted.camera, sources, plan_.range, plan_.tolerance, options_.interrupted);
+  std::unique_ptr<SynthesisMemory> memory = TakeMemory();
+  const VirtualImage& image = Synthesize(wanted.camera, sources, plan_.range, plan_.tolerance,
+                                         options_.interrupted, memory.get());
   // The loop returns an error of its own.
   if (IsSet(options_.interrupted)) return Error{ErrorKind::kInterrupted, "interrupted"};
   {
@@ -430,7 +441,11 @@ Result<void> Densifier::AddVirtual(const RecordedValues& values, size_t i) {
     LF_RETURN_IF_ERROR(writer_->AddTrust(id, image.trust));
   CodecSettings settings;
   settings.profile = CodecProfile::kLossless;
-  return writer_->Add(id, CodeOf(values.Of(image.light, all_.cameras[id.value].gain), settings));
+  LF_RETURN_IF_ERROR(
+      writer_->Add(id, CodeOf(values.Of(image.light, all_.cameras[id.value].gain), settings)));
+  const std::lock_guard lock(mutex_);
+  spare_.push_back(std::move(memory));
+  return {};
 }
 
 Result<DensifyReport> Densifier::Run() {

@@ -85,17 +85,6 @@ int CostByDefinition(const WorkingImage& reference, std::span<const SweepView> v
   return least;
 }
 
-// Calls check() for each instruction set.
-template <class Check>
-void ForEachTarget(const Check& check) {
-  for (const int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
-    SCOPED_TRACE(hwy::TargetName(target));
-    check();
-  }
-  hwy::SetSupportedTargetsForTest(0);
-}
-
 TEST(MatchingCosts, EqualTheirDefinitionOnAllInstructionSets) {
   const std::vector<WorkingImage> images = NineImages({{2, 0.1, 1}, {5, INFINITY, 2}});
   const std::vector<SweepView> views = ViewsOf(images);

@@ -4,183 +4,80 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
+#include <cstring>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "lf/core/check.h"
 #include "lf/densify/bicubic.h"
-#include "lf/densify/pair_map.h"
+#include "lf/densify/source_view.h"
 #include "lf/densify/trust.h"
 
 namespace lf {
 namespace {
 
 constexpr int kColours = LfPixels::kRayLane, kLanes = LfPixels::kRgbLanes;
-constexpr float kNoDepth = -1e30f;
 
-// Agreement of two inverse depths whose difference is `error` tolerances: 1 if it is 0, 0 from 2
-// on. (Tukey's biweight, with its power of a polynomial instead of an exponential function, which
-// has other bits on other machines.)
-float Agreement(float error) {
-  const float left = std::max(0.0f, 1 - 0.25f * error * error);
-  return left * left * left;
-}
-
-// The pixels of one source, seen from the virtual camera.
-class SourceView {
- public:
-  SourceView(const PinholeCamera& camera, const Source& source, const InverseDepths& range)
-      : source_(source),
-        from_source_(MapBetween(source.image->camera, camera)),
-        to_source_(MapBetween(camera, source.image->camera)),
-        step_(static_cast<float>(range.Step())),
-        // The number 1 stands for the least inverse depth.
-        first_(static_cast<float>(range.least - range.Step())) {}
-
-  float weight() const { return source_.weight; }
-
-  // Writes the nearest depth that the source shows at each pixel of the virtual image.
-  void Project(Image<float>* candidates, InterruptFlag interrupted) const {
-    constexpr float kReach = 0.75f;
-    const DepthPlane& plane = *source_.plane;
-    const int width = candidates->width(), height = candidates->height();
-    std::fill(candidates->pixels().begin(), candidates->pixels().end(), kNoDepth);
-    for (int y = 0; y < plane.height() && !IsSet(interrupted); ++y)
-      for (int x = 0; x < plane.width(); ++x) {
-        if (source_.image->light.at(x, y, kColours) == 0 ||
-            IsTransparent(&source_.image->tones.at(x, y)))
-          continue;
-        const float z = DepthAt(x, y);
-        const PairMap::Place place =
-            from_source_.At(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, z);
-        if (!(place.w > 0)) continue;
-        const float u = place.u_px - 0.5f, v = place.v_px - 0.5f;
-        if (!(u > -1 && v > -1 && u < static_cast<float>(width) && v < static_cast<float>(height)))
-          continue;
-        const float depth = z / place.w;
-        const int left = static_cast<int>(std::floor(u)), top = static_cast<int>(std::floor(v));
-        for (int j = top; j <= top + 1; ++j)
-          for (int i = left; i <= left + 1; ++i) {
-            if (i < 0 || j < 0 || i >= width || j >= height) continue;
-            if (std::abs(static_cast<float>(i) - u) > kReach ||
-                std::abs(static_cast<float>(j) - v) > kReach)
-              continue;
-            candidates->at(i, j) = std::max(candidates->at(i, j), depth);
-          }
-      }
-  }
-
-  // A point of the virtual image in the source's image.
-  struct Seen {
-    bool is_inside = false;
-    float u_px = 0, v_px = 0;
-    // The source's inverse depth at the place, less that of the point, in tolerances: negative if
-    // the source sees through the point.
-    float error = 0;
-  };
-  Seen See(float x, float y, float z, float per_tolerance) const {
-    const PairMap::Place place = to_source_.At(x, y, z);
-    const DepthPlane& plane = *source_.plane;
-    if (!(place.w > 0 && place.u_px >= 0 && place.v_px >= 0 &&
-          place.u_px < static_cast<float>(plane.width()) &&
-          place.v_px < static_cast<float>(plane.height())))
-      return {};
-    const std::optional<float> there = DepthSeenAt(place);
-    const float error = there ? (*there - z / place.w) * per_tolerance : kSeenThrough;
-    return {true, place.u_px, place.v_px, error};
-  }
-  bool Sample(const Seen& seen, float colour[kLanes]) const {
-    return SampleBicubic(source_.image->light, seen.u_px, seen.v_px, colour);
-  }
-  bool HasEmpty() const { return !source_.image->empty.empty(); }
-  // Returns true if the source shows that nothing is at a point of the virtual image.
-  bool SeesNothingAt(float x, float y, float z) const {
-    return HasEmpty() && IsMarkedAt(source_.image->empty, to_source_.At(x, y, z));
-  }
-
- private:
-  static constexpr float kSeenThrough = -1e6f;
-
-  bool ShowsNothing(int x, int y) const { return IsTransparent(&source_.image->tones.at(x, y)); }
-  float DepthAt(int x, int y) const {
-    return first_ + static_cast<float>(source_.plane->at(x, y)) * step_;
-  }
-  // Returns the depth of the nearest pixel. A transparent pixel has none: it stands for the outline
-  // among the four pixels around the place. Returns nullopt if there is no outline.
-  std::optional<float> DepthSeenAt(const PairMap::Place& place) const {
-    const int x = static_cast<int>(place.u_px), y = static_cast<int>(place.v_px);
-    if (!HasEmpty() || !ShowsNothing(x, y)) return DepthAt(x, y);
-    const DepthPlane& plane = *source_.plane;
-    const int beside =
-        std::clamp(place.u_px - static_cast<float>(x) < 0.5f ? x - 1 : x + 1, 0, plane.width() - 1);
-    const int below = std::clamp(place.v_px - static_cast<float>(y) < 0.5f ? y - 1 : y + 1, 0,
-                                 plane.height() - 1);
-    if (!ShowsNothing(beside, y)) return DepthAt(beside, y);
-    if (!ShowsNothing(x, below)) return DepthAt(x, below);
-    if (!ShowsNothing(beside, below)) return DepthAt(beside, below);
-    return std::nullopt;
-  }
-
-  const Source source_;
-  const PairMap from_source_, to_source_;
-  const float step_, first_;
-};
-
-// A candidate depth of a pixel, the votes for it, and the point in each source's image.
-struct Candidate {
-  float depth = 0;
-  float votes = 0;
-  std::array<SourceView::Seen, kMostSources> seen;
+// Candidate depths of the pixels of a chunk of a row, the votes for them, and their points in the
+// images of the sources.
+struct Chunk {
+  int x_begin = 0, y = 0, count = 0;
+  std::array<int, kChunk> candidates = {};        // number of candidates of each pixel
+  std::array<int, kChunk> elected = {};           // the candidate with most votes, about
+  alignas(64) float depth[kMostSources][kChunk];  // [candidate][pixel]
+  alignas(64) float votes[kMostSources][kChunk];
+  alignas(64) float error[kMostSources][kMostSources][kChunk];  // [candidate][source][pixel]
+  SeenPoints seen[kMostSources][kMostSources];
 };
 
 class Synthesizer {
  public:
   Synthesizer(const PinholeCamera& camera, std::span<const Source> sources,
-              const InverseDepths& range, double tolerance, InterruptFlag interrupted)
+              const InverseDepths& range, double tolerance, InterruptFlag interrupted,
+              SynthesisMemory* memory)
       : width_(camera.intrinsics.width_px),
         height_(camera.intrinsics.height_px),
         tolerance_(static_cast<float>(tolerance)),
         per_tolerance_(static_cast<float>(1 / tolerance)),
         farthest_(static_cast<float>(range.least)),
         nothing_{sources[0].image->black, sources[0].image->black, sources[0].image->black, 1},
-        interrupted_(interrupted) {
-    for (const Source& source : sources) {
-      views_.emplace_back(camera, source, range);
-      candidates_.emplace_back(width_, height_);
-      views_.back().Project(&candidates_.back(), interrupted_);
+        transparent_(LanesOf(nothing_.data())),
+        interrupted_(interrupted),
+        candidates_(memory->candidates),
+        holes_(memory->holes),
+        image_(memory->image) {
+    candidates_.resize(sources.size());
+    for (size_t s = 0; s < sources.size(); ++s) {
+      views_.emplace_back(camera, sources[s], range);
+      candidates_[s].Resize(width_, height_, 1);
+      views_[s].Project(&candidates_[s], interrupted_);
     }
     Carve();
     FillHoles();
   }
 
-  VirtualImage Run() const {
-    constexpr float kWeak = 0.4f;
-    VirtualImage image{Image<uint16_t>(width_, height_, LfPixels::kRgbLanes),
-                       Image<uint8_t>(width_, height_), 0};
+  void Run() {
+    image_.light.Resize(width_, height_, kLanes);
+    image_.trust.Resize(width_, height_, 1);
     size_t weak = 0, transparent = 0;
-    std::array<Candidate, kMostSources> elected;
+    const auto chunk = std::make_unique<Chunk>();
     for (int y = 0; y < height_ && !IsSet(interrupted_); ++y)
-      for (int x = 0; x < width_; ++x) {
-        const size_t count = Vote(x, y, &elected);
-        if (count == 0) {
-          std::copy(nothing_.begin(), nothing_.end(), &image.light.at(x, y));
-          image.trust.at(x, y) = LfPixels::kTrusted;
-          ++transparent;
-          continue;
-        }
-        if (elected[0].votes < kWeak) ++weak;
-        image.trust.at(x, y) = Mix({elected.data(), count}, &image.light.at(x, y));
+      for (int x = 0; x < width_; x += kChunk) {
+        chunk->x_begin = x;
+        chunk->y = y;
+        chunk->count = std::min(kChunk, width_ - x);
+        const int most = Vote(chunk.get());
+        Show(*chunk, most, &weak, &transparent);
       }
     const double shown = static_cast<double>(width_) * height_ - static_cast<double>(transparent);
-    image.weak_share = static_cast<double>(weak) / std::max(shown, 1.0);
-    return image;
+    image_.weak_share = static_cast<double>(weak) / std::max(shown, 1.0);
   }
 
  private:
   bool IsCarved(int x, int y, float depth) const {
-    return std::any_of(views_.begin(), views_.end(), [&](const SourceView& view) {
-      return view.SeesNothingAt(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, depth);
-    });
+    return std::any_of(views_.begin(), views_.end(),
+                       [&](const SourceView& view) { return view.SeesNothingAt(x, y, depth); });
   }
 
   // Removes the candidates at which nothing can be.
@@ -201,7 +98,8 @@ class Synthesizer {
   // candidates take the least of the scene.
   void FillHoles() {
     constexpr int kReach = 24;
-    holes_ = Image<float>(width_, height_, 1, kNoDepth);
+    holes_.Resize(width_, height_, 1);
+    std::fill(holes_.pixels().begin(), holes_.pixels().end(), kNoDepth);
     std::vector<std::array<int, 2>> open;
     for (int y = 0; y < height_; ++y)
       for (int x = 0; x < width_; ++x) {
@@ -233,145 +131,216 @@ class Synthesizer {
     for (const auto& [x, y] : open) holes_.at(x, y) = farthest_;
   }
 
-  // Fills a candidate without votes.
-  void See(int x, int y, float depth, Candidate* candidate) const {
-    candidate->depth = depth;
-    candidate->votes = 0;
-    for (size_t i = 0; i < views_.size(); ++i)
-      candidate->seen[i] = views_[i].See(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f,
-                                         depth, per_tolerance_);
-  }
-
-  // Writes the candidates of a pixel with their votes, the elected one first. Returns their number;
-  // 0 if nothing is at the pixel.
-  size_t Vote(int x, int y, std::array<Candidate, kMostSources>* result) const {
+  // Finds the candidates of a chunk's pixels: the depths of all sources, but for those that are
+  // nearly that of a source before. A pixel without candidate gets the depth around it. Returns the
+  // largest number of candidates of a pixel, or 1.
+  int FindCandidates(Chunk* chunk) const {
     // Candidates this near to each other, in tolerances, are one.
     constexpr float kSame = 0.5f;
-    // A vote against a depth counts less, because planes are wrong near outlines.
-    constexpr float kThrough = -1.5f, kAgainst = 0.7f;
-    constexpr float kNearer = 0.02f;  // lead that a farther candidate needs, and a nearer one lacks
-    std::array<Candidate, kMostSources>& found = *result;
-    size_t count = 0, best = 0;
+    const float same = kSame * tolerance_;
+    const auto count = static_cast<size_t>(chunk->count);
+    int most = 0;
+    chunk->candidates.fill(0);
     for (const Image<float>& candidates : candidates_) {
-      const float depth = candidates.at(x, y);
-      if (depth == kNoDepth) continue;
-      bool is_known = false;
-      for (size_t i = 0; i < count; ++i)
-        is_known |= std::abs(found[i].depth - depth) < kSame * tolerance_;
-      if (is_known) continue;
-      Candidate& candidate = found[count];
-      See(x, y, depth, &candidate);
-      float votes = 0;
-      for (size_t i = 0; i < views_.size(); ++i) {
-        const SourceView::Seen& seen = candidate.seen[i];
-        if (!seen.is_inside) continue;
-        votes += views_[i].weight() * Agreement(seen.error);
-        if (seen.error < kThrough) votes -= kAgainst * views_[i].weight();
+      const float* depths = candidates.row(chunk->y) + chunk->x_begin;
+      for (size_t i = 0; i < count; ++i) {
+        if (depths[i] == kNoDepth) continue;
+        bool is_known = false;
+        for (int k = 0; k < chunk->candidates[i]; ++k)
+          is_known |= std::abs(chunk->depth[k][i] - depths[i]) < same;
+        if (is_known) continue;
+        chunk->depth[chunk->candidates[i]++][i] = depths[i];
+        most = std::max(most, chunk->candidates[i]);
       }
-      candidate.votes = votes;
-      if (count > 0 && votes > found[best].votes + (depth > found[best].depth ? -kNearer : kNearer))
-        best = count;
-      ++count;
     }
-    if (count == 0) {
-      See(x, y, holes_.at(x, y), &found[0]);
-      return IsCarved(x, y, found[0].depth) ? 0 : 1;
-    }
-    std::swap(found[0], found[best]);
-    return count;
+    for (size_t i = 0; i < count; ++i)
+      if (chunk->candidates[i] == 0)
+        chunk->depth[0][i] = holes_.at(chunk->x_begin + static_cast<int>(i), chunk->y);
+    return std::max(most, 1);
   }
 
-  // Writes the colour of a pixel; leaves it 0 if no source shows it. Returns the trust in it.
-  uint8_t Mix(std::span<const Candidate> elected, uint16_t* pixel) const {
-    constexpr float kClose = 0.6f;  // candidates with so many fewer votes have no part
-    float colour[kLanes] = {}, sum = 0, spread = 0;
-    for (const Candidate& candidate : elected) {
-      const float rest = 1 - (elected[0].votes - candidate.votes) / kClose;
-      if (!(rest > 0)) continue;
-      const float share = rest * rest * rest;
-      float at_depth[kLanes];
-      float* const wants_spread = &candidate == elected.data() ? &spread : nullptr;
-      if (!ColourOf(candidate, at_depth, wants_spread)) continue;
-      for (int c = 0; c < kLanes; ++c) colour[c] += share * at_depth[c];
-      sum += share;
+  // Finds the candidates of a chunk's pixels, the votes for them, and the elected ones. Returns the
+  // largest number of candidates of a pixel, or 1.
+  int Vote(Chunk* chunk) const {
+    constexpr float kNearer = 0.02f;  // lead that a farther candidate needs, and a nearer one lacks
+    const int most = FindCandidates(chunk);
+    const auto count = static_cast<size_t>(chunk->count);
+    chunk->elected.fill(0);
+    for (int k = 0; k < most; ++k) {
+      // Pixels with fewer candidates are computed as well, with any depth.
+      for (size_t i = 0; k > 0 && i < count; ++i)
+        if (k >= chunk->candidates[i]) chunk->depth[k][i] = chunk->depth[0][i];
+      std::fill(chunk->votes[k], chunk->votes[k] + count, 0.0f);
+      for (size_t s = 0; s < views_.size(); ++s)
+        views_[s].See(chunk->x_begin, chunk->y, chunk->count, chunk->depth[k], per_tolerance_,
+                      &chunk->seen[k][s], chunk->error[k][s], chunk->votes[k]);
+      for (size_t i = 0; i < count; ++i) {
+        if (k >= chunk->candidates[i]) continue;
+        const int best = chunk->elected[i];
+        const bool is_nearer = chunk->depth[k][i] > chunk->depth[best][i];
+        if (chunk->votes[k][i] > chunk->votes[best][i] + (is_nearer ? -kNearer : kNearer))
+          chunk->elected[i] = k;
+      }
     }
-    if (!(sum > 0)) return 0;
-    for (float& lane : colour) lane /= sum;
+    for (size_t i = 0; i < count; ++i)
+      if (chunk->candidates[i] == 0) chunk->votes[0][i] = 0;
+    return most;
+  }
+
+  // Writes the pixels of a chunk, and counts those on whose depth few sources agree, and those that
+  // are transparent.
+  void Show(const Chunk& chunk, int most, size_t* weak, size_t* transparent) {
+    constexpr float kWeak = 0.4f;
+    const auto count = static_cast<size_t>(chunk.count);
+    std::array<Mixture, kChunk> mixtures;
+    for (int k = 0; k < most; ++k) Mix(chunk, k, &mixtures);
+    for (size_t i = 0; i < count; ++i) {
+      const int x = chunk.x_begin + static_cast<int>(i), y = chunk.y;
+      uint16_t* light = &image_.light.at(x, y);
+      uint8_t& trust = image_.trust.at(x, y);
+      if (chunk.candidates[i] == 0 && IsCarved(x, y, chunk.depth[0][i])) {
+        std::copy(nothing_.begin(), nothing_.end(), light);
+        trust = LfPixels::kTrusted;
+        ++*transparent;
+        continue;
+      }
+      const float votes = chunk.votes[chunk.elected[i]][i];
+      if (votes < kWeak) ++*weak;
+      trust = Finish(mixtures[i], votes, light);
+    }
+  }
+
+  // The colours of a pixel's candidates, each times its share.
+  struct Mixture {
+    PixelLanes colour = {};
+    float shares = 0;
+    float spread = 0;  // of the colours at the elected depth
+  };
+
+  // Adds candidate k of all pixels that have one, unless it has many fewer votes than the elected
+  // one.
+  void Mix(const Chunk& chunk, int k, std::array<Mixture, kChunk>* mixtures) const {
+    constexpr float kClose = 0.6f;  // candidates with so many fewer votes have no part
+    std::array<int, kChunk> pixels;
+    std::array<float, kChunk> shares;
+    size_t count = 0;
+    for (int i = 0; i < chunk.count; ++i) {
+      const auto at = static_cast<size_t>(i);
+      if (k >= std::max(chunk.candidates[at], 1)) continue;
+      const float rest = 1 - (chunk.votes[chunk.elected[at]][at] - chunk.votes[k][at]) / kClose;
+      if (!(rest > 0)) continue;
+      shares[count] = rest * rest * rest;
+      pixels[count++] = i;
+    }
+    if (count == 0) return;
+    std::array<PointColours, kMostSources> colours;
+    for (size_t s = 0; s < views_.size(); ++s)
+      views_[s].Sample(chunk.seen[k][s], {pixels.data(), count}, &colours[s]);
+    for (size_t p = 0; p < count; ++p) {
+      const auto i = static_cast<size_t>(pixels[p]);
+      Mixture& mixture = (*mixtures)[i];
+      PixelLanes colour;
+      if (!ColourOf(chunk, k, colours, i, &colour,
+                    k == chunk.elected[i] ? &mixture.spread : nullptr))
+        continue;
+      mixture.colour += shares[p] * colour;
+      mixture.shares += shares[p];
+    }
+  }
+
+  // Writes a pixel, 0 if no source shows it. Returns the trust in it.
+  uint8_t Finish(const Mixture& mixture, float votes, uint16_t* pixel) const {
+    if (!(mixture.shares > 0)) {
+      std::fill(pixel, pixel + kLanes, uint16_t{0});
+      return 0;
+    }
+    const PixelLanes lanes = mixture.colour / mixture.shares;
+    const float colour[kLanes] = {lanes[0], lanes[1], lanes[2], lanes[3]};
     RoundPixel(colour, nothing_[0], pixel);
     // Transparent parts are known.
     const float opacity = OpacityOfLane(colour[kColours]);
-    return static_cast<uint8_t>(opacity * TrustOf(elected[0].votes, spread) +
+    return static_cast<uint8_t>(opacity * TrustOf(votes, mixture.spread) +
                                 (1 - opacity) * LfPixels::kTrusted + 0.5f);
   }
 
-  // Computes the colour of a pixel if it has this depth. False if no source shows it.
+  // Computes the colour of pixel i if it has the depth of candidate k. False if no source shows it.
   //   spread  receives the spread of the colours of the sources that agree on the depth; may be
   //   null
-  bool ColourOf(const Candidate& candidate, float result[kLanes], float* spread) const {
+  bool ColourOf(const Chunk& chunk, int k, const std::array<PointColours, kMostSources>& colours,
+                size_t i, PixelLanes* result, float* spread) const {
     // The more sources agree on the depth, the less the others count.
     constexpr float kFewVotes = 0.02f;
     // If sources with so much of the weight are opaque, a small error of the depth moved the others
     // to an outline.
     constexpr float kMostly = 0.7f, kNearlyOpaque = 0.99f;
     struct Sampled {
-      float colour[kLanes];
+      PixelLanes colour;
       float weight, agreement, opacity;
     };
     std::array<Sampled, kMostSources> sampled;
     size_t count = 0;
     float opaque = 0, whole = 0;
-    for (size_t i = 0; i < views_.size(); ++i) {
-      const SourceView::Seen& seen = candidate.seen[i];
-      Sampled& sample = sampled[count];
-      if (!seen.is_inside || !views_[i].Sample(seen, sample.colour)) continue;
-      sample.weight = views_[i].weight();
-      sample.agreement = Agreement(seen.error);
-      sample.opacity = OpacityOfLane(sample.colour[kColours]);
+    for (size_t s = 0; s < views_.size(); ++s) {
+      if (!colours[s].is_shown[i]) continue;
+      Sampled& sample = sampled[count++];
+      std::memcpy(&sample.colour, colours[s].lanes[i], sizeof(sample.colour));
+      sample.weight = views_[s].weight();
+      sample.agreement = AgreementOf(chunk.error[k][s][i]);
+      sample.opacity = OpacityOfLane(colours[s].lanes[i][kColours]);
       whole += sample.weight;
       if (sample.opacity > kNearlyOpaque) opaque += sample.weight;
-      ++count;
     }
     const bool is_opaque = opaque >= kMostly * whole;
-    float agreed[kLanes] = {}, agreed_sum = 0, all[kLanes] = {}, all_sum = 0;
-    std::array<WeighedColour, kMostSources> colours;
-    size_t colour_count = 0;
+    PixelLanes agreed = {}, all = {};
+    float agreed_sum = 0, all_sum = 0;
+    std::array<WeighedColour, kMostSources> weighed;
+    size_t weighed_count = 0;
     for (const Sampled& sample : std::span(sampled.data(), count)) {
       if (is_opaque && sample.opacity <= kNearlyOpaque) continue;
       const float weight = sample.weight * sample.agreement;
       // The part of the source's pixel that is transparent agrees that nothing is at the place.
       const float through = sample.weight * (1 - sample.agreement) * (1 - sample.opacity);
-      for (int c = 0; c < kLanes; ++c) {
-        agreed[c] += weight * sample.colour[c] + through * nothing_[static_cast<size_t>(c)];
-        all[c] += sample.weight * sample.colour[c];
-      }
-      colours[colour_count++] = {{sample.colour[0], sample.colour[1], sample.colour[2]}, weight};
+      agreed += weight * sample.colour;
+      if (through > 0) agreed += through * transparent_;
+      all += sample.weight * sample.colour;
+      weighed[weighed_count++] = {sample.colour, weight};
       agreed_sum += weight + through;
       all_sum += sample.weight;
     }
     if (!(all_sum > 0)) return false;
-    if (spread != nullptr) *spread = SpreadOf({colours.data(), colour_count});
+    if (spread != nullptr) *spread = SpreadOf({weighed.data(), weighed_count});
     const float trust = agreed_sum / (agreed_sum + kFewVotes);
-    for (int c = 0; c < kLanes; ++c)
-      result[c] =
-          (agreed_sum > 0 ? trust * agreed[c] / agreed_sum : 0) + (1 - trust) * all[c] / all_sum;
+    *result = (1 - trust) / all_sum * all;
+    if (agreed_sum > 0) *result += trust / agreed_sum * agreed;
     return true;
   }
 
   const int width_, height_;
   const float tolerance_, per_tolerance_, farthest_;
   const std::array<uint16_t, kLanes> nothing_;  // a transparent pixel
+  const PixelLanes transparent_;                // the same
   const InterruptFlag interrupted_;
   std::vector<SourceView> views_;
-  std::vector<Image<float>> candidates_;
-  Image<float> holes_;  // for pixels without a candidate: a depth from around them
+  std::vector<Image<float>>& candidates_;  // [source]
+  Image<float>& holes_;  // for pixels without a candidate: a depth from around them
+  VirtualImage& image_;
 };
 
 }  // namespace
 
+const VirtualImage& Synthesize(const PinholeCamera& camera, std::span<const Source> sources,
+                               const InverseDepths& range, double tolerance,
+                               InterruptFlag interrupted, SynthesisMemory* memory) {
+  LF_CHECK(!sources.empty() && sources.size() <= kMostSources && tolerance > 0);
+  Synthesizer(camera, sources, range, tolerance, interrupted, memory).Run();
+  return memory->image;
+}
+
 VirtualImage Synthesize(const PinholeCamera& camera, std::span<const Source> sources,
                         const InverseDepths& range, double tolerance, InterruptFlag interrupted) {
-  LF_CHECK(!sources.empty() && sources.size() <= kMostSources && tolerance > 0);
-  return Synthesizer(camera, sources, range, tolerance, interrupted).Run();
+  SynthesisMemory memory;
+  Synthesize(camera, sources, range, tolerance, interrupted, &memory);
+  return std::move(memory.image);
 }
 
 }  // namespace lf

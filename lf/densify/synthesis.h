@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "lf/camera/pinhole.h"
 #include "lf/core/image.h"
@@ -31,6 +32,14 @@ struct VirtualImage {
   double weak_share = 0;
 };
 
+// Memory of Synthesize(), which is expensive to allocate for each image. Its content has no meaning
+// for others.
+struct SynthesisMemory {
+  std::vector<Image<float>> candidates;
+  Image<float> holes;
+  VirtualImage image;
+};
+
 // Computes the image of `camera`, in three steps:
 //   1. The pixels of each source are projected to the camera. The nearest depth at each of its
 //      pixels is that source's candidate.
@@ -52,7 +61,12 @@ struct VirtualImage {
 //   sources      1 to kMostSources
 //   tolerance    of inverse depths that count as equal
 //   interrupted  once it is set, the result must not be used
+//   memory       keeps the result until the next call with it
 inline constexpr size_t kMostSources = 8;
+const VirtualImage& Synthesize(const PinholeCamera& camera, std::span<const Source> sources,
+                               const InverseDepths& range, double tolerance,
+                               InterruptFlag interrupted, SynthesisMemory* memory);
+// The same, in memory of its own.
 VirtualImage Synthesize(const PinholeCamera& camera, std::span<const Source> sources,
                         const InverseDepths& range, double tolerance,
                         InterruptFlag interrupted = nullptr);

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lf/densify/bicubic.h"
+#include "lf/densify/synthesis_row.h"
 #include "lf/densify/test_world.h"
 
 namespace lf {
@@ -96,6 +98,49 @@ TEST(Synthesis, TrustsPixelsOnWhoseDepthAndColourSourcesAgree) {
   for (size_t i = 0; i < 2; ++i)
     other.images[i] = ImageOfWalls(other.images[i].camera, {{2.3, INFINITY, 2}});
   EXPECT_LT(MeanTrust(Synthesize(camera, other.sources, kScene, kTolerance), 8), 0.5);
+}
+
+TEST(Synthesis, HasTheSameBitsOnAllInstructionSets) {
+  FourSources four({{1.5, 0.1, 1}, {6, INFINITY, 2}});
+  four.images[2].light.at(40, 30, 3) = 0;  // a masked pixel
+  const PinholeCamera camera = CameraAt(0.013, -0.021, 101, 64);
+  const VirtualImage expected = Synthesize(camera, four.sources, kScene, kTolerance);
+  // The memory has had an image of another size.
+  SynthesisMemory memory;
+  Synthesize(CameraAt(0, 0, 120, 70), four.sources, kScene, kTolerance, nullptr, &memory);
+  ForEachTarget([&] {
+    const VirtualImage& image =
+        Synthesize(camera, four.sources, kScene, kTolerance, nullptr, &memory);
+    EXPECT_EQ(image.light.pixels(), expected.light.pixels());
+    EXPECT_EQ(image.trust.pixels(), expected.trust.pixels());
+    EXPECT_EQ(image.weak_share, expected.weak_share);
+  });
+}
+
+TEST(SynthesisRow, InterpolatesAsBicubicSamples) {
+  const WorkingImage image = ImageOfWalls(CameraAt(0, 0), {{2.3, INFINITY, 1}});
+  Image<uint16_t> light = image.light;
+  light.at(50, 20, 3) = 0;
+  SeenPoints seen;
+  std::vector<int> pixels;
+  for (int i = 0; i < kChunk; ++i) {
+    const auto k = static_cast<float>(i);
+    seen.u_px[i] = i % 5 == 0 ? 0.2f : 46 + 0.13f * k;
+    seen.v_px[i] = i % 7 == 0 ? 63.4f : 18 + 0.07f * k;
+    seen.pixel[i] = i == 9 ? kOutside : 0;
+    if (i % 3 != 2) pixels.push_back(i);
+  }
+  ForEachTarget([&] {
+    PointColours colours;
+    SampleRow(light, true, seen, pixels, &colours);
+    for (const int i : pixels) {
+      float expected[LfPixels::kRgbLanes];
+      const bool is_shown = SampleBicubic(light, seen.u_px[i], seen.v_px[i], expected);
+      ASSERT_EQ(colours.is_shown[i], is_shown && i != 9) << i;
+      for (int c = 0; colours.is_shown[i] && c < LfPixels::kRgbLanes; ++c)
+        EXPECT_NEAR(colours.lanes[i][c], expected[c], 0.05f) << i;
+    }
+  });
 }
 
 TEST(Synthesis, AVirtualCameraAtARecordedOneShowsItsImage) {
@@ -231,6 +276,7 @@ TEST(SynthesisOfOpacity, MaskedPixelsOfASourceAreUnknownAndRemoveNothing) {
   std::fill(image.light.pixels().begin(), image.light.pixels().end(), uint16_t{0});
   std::fill(image.tones.pixels().begin(), image.tones.pixels().end(), uint16_t{0});
   image.empty = EmptyPixels(image.tones);
+  image.without_depth = PixelsWithoutDepth(image.tones);
   EXPECT_TRUE(image.empty.empty());
   four.ExpectDiskAt(CameraAt(0.013, -0.021));
 }

@@ -3,6 +3,9 @@
 // for tests.
 #pragma once
 
+#include <gtest/gtest.h>
+#include <hwy/highway.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -59,6 +62,7 @@ inline WorkingImage ImageOfWalls(const PinholeCamera& camera, const std::vector<
       image.tones.at(x, y, 3) = 255;
     }
   image.compared = ComparedTones(image.tones);
+  image.without_depth = PixelsWithoutDepth(image.tones);
   return image;
 }
 
@@ -103,6 +107,7 @@ inline WorkingImage ImageOfDisk(const PinholeCamera& camera, const Disk& disk) {
     }
   image.compared = ComparedTones(image.tones);
   image.empty = EmptyPixels(image.tones);
+  image.without_depth = PixelsWithoutDepth(image.tones);
   return image;
 }
 
@@ -112,6 +117,17 @@ inline PinholeCamera CameraAt(double x, double y, int width_px = 96, int height_
   camera.intrinsics = {100, 100, width_px / 2.0, height_px / 2.0, 0, width_px, height_px, {}, {}};
   camera.cam_from_world.translation = Vec3(-x, -y, 0);
   return camera;
+}
+
+// Calls check() for each instruction set.
+template <class Check>
+void ForEachTarget(const Check& check) {
+  for (const int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    hwy::SetSupportedTargetsForTest(target);
+    SCOPED_TRACE(hwy::TargetName(target));
+    check();
+  }
+  hwy::SetSupportedTargetsForTest(0);
 }
 
 }  // namespace lf

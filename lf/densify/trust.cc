@@ -8,19 +8,22 @@ namespace lf {
 
 float SpreadOf(std::span<const WeighedColour> colours) {
   constexpr float kFloor = 0.02f * 3 * 65535;
-  std::array<float, LfPixels::kRayLane> mean = {};
+  PixelLanes mean = {};
   float weights = 0;
   for (const WeighedColour& one : colours) {
-    for (size_t c = 0; c < mean.size(); ++c) mean[c] += one.weight * one.colour[c];
+    mean += one.weight * one.colour;
     weights += one.weight;
   }
   if (!(weights > 0)) return 0;
-  float light = kFloor;
-  for (float& value : mean) light += std::max(0.0f, value /= weights);
-  float deviations = 0;
-  for (const WeighedColour& one : colours)
-    for (size_t c = 0; c < mean.size(); ++c)
-      deviations += one.weight * std::abs(one.colour[c] - mean[c]);
+  mean /= weights;
+  const PixelLanes shown = mean > 0 ? mean : 0 * mean;
+  const float light = kFloor + shown[0] + shown[1] + shown[2];
+  PixelLanes sums = {};
+  for (const WeighedColour& one : colours) {
+    const PixelLanes difference = one.colour - mean;
+    sums += one.weight * (difference > 0 ? difference : -difference);
+  }
+  const float deviations = sums[0] + sums[1] + sums[2];
   return deviations / (weights * light);
 }
 

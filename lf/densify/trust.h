@@ -2,18 +2,18 @@
 // How far a pixel of a virtual LF image can be trusted.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 
+#include "lf/densify/pixel_lanes.h"
 #include "lf/light_field/model/lf_pixels.h"
 
 namespace lf {
 
 // The colour that a source shows at a pixel, in 16-bit radiance.
 struct WeighedColour {
-  std::array<float, LfPixels::kRayLane> colour = {};
-  float weight = 0;  // at least 0
+  PixelLanes colour = {};  // the last lane does not count
+  float weight = 0;        // at least 0
 };
 
 // Returns how far colours lie apart: the weighted mean of |c - m| over all colours c, summed over

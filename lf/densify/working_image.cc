@@ -109,6 +109,17 @@ Image<uint8_t> EmptyPixels(const Image<uint16_t>& tones) {
   return is_any ? std::move(empty) : Image<uint8_t>();
 }
 
+Image<uint8_t> PixelsWithoutDepth(const Image<uint16_t>& tones) {
+  Image<uint8_t> result(tones.width(), tones.height());
+  bool is_any = false;
+  for (size_t i = 0; i < result.pixels().size(); ++i) {
+    const uint16_t* pixel = tones.pixels().data() + i * LfPixels::kRgbLanes;
+    result.pixels()[i] = pixel[LfPixels::kRayLane] == 0 || IsTransparent(pixel) ? 1 : 0;
+    is_any |= result.pixels()[i] != 0;
+  }
+  return is_any ? std::move(result) : Image<uint8_t>();
+}
+
 int TextureAt(const Image<uint16_t>& tones, int x, int y) {
   constexpr int kSameOpacity = 4;
   const int opacity = tones.at(x, y, LfPixels::kRayLane);
@@ -164,6 +175,7 @@ WorkingImage WorkingImageOf(const PinholeCamera& lf_camera, const LfPixels& pixe
   }
   image.compared = ComparedTones(image.tones);
   image.empty = EmptyPixels(image.tones);
+  image.without_depth = PixelsWithoutDepth(image.tones);
   return image;
 }
 

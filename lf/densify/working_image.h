@@ -31,6 +31,9 @@ struct WorkingImage {
   // is along the ray of such a pixel, also if its LF camera is a little wrong. Empty if there is
   // no such pixel.
   Image<uint8_t> empty = {};
+  // [height][width]: 1 for pixels that are masked or transparent, and have no depth, otherwise 0.
+  // Empty if there is no such pixel.
+  Image<uint8_t> without_depth = {};
   uint16_t black = 0;  // 16-bit radiance of no light
   int width() const { return tones.width(); }
   int height() const { return tones.height(); }
@@ -46,6 +49,8 @@ size_t ShownCount(const Image<uint16_t>& tones);
 
 // Returns WorkingImage::empty.
 Image<uint8_t> EmptyPixels(const Image<uint16_t>& tones);
+// Returns WorkingImage::without_depth.
+Image<uint8_t> PixelsWithoutDepth(const Image<uint16_t>& tones);
 
 // Returns true if the mask marks the pixel at a place in front of its camera.
 inline bool IsMarkedAt(const Image<uint8_t>& mask, const PairMap::Place& place) {

@@ -6,7 +6,7 @@ namespace {
 
 size_t BytesOf(const WorkingImage& image) {
   return image.light.size_bytes() + image.tones.size_bytes() + image.compared.size_bytes() +
-         image.empty.size_bytes();
+         image.empty.size_bytes() + image.without_depth.size_bytes();
 }
 
 }  // namespace
