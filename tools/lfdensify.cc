@@ -106,7 +106,9 @@ void AddQuality(CLI::App& app, Arguments& a) {
       .Add("--spacing PX", a.choices.spacing_px,
            "Largest distance between copies (1.5)\n"
            "What is out of focus is made of copies, one for each LF image. The unit is an element "
-           "of the frames if PATH is given, otherwise a pixel of the virtual LF images.")
+           "of the frames if PATH is given, for most points that these show, otherwise a pixel of "
+           "the "
+           "virtual LF images.")
       ->check(CLI::Range(0.25, 16.));
   quality
       .Add("--most N", a.choices.most_virtual,

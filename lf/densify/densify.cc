@@ -252,7 +252,8 @@ Result<void> Densifier::MakePlan() {
       plan_, PlanDensify(light_field_, *store_, options_.choices, pool_,
                          [this](std::span<const std::vector<uint32_t>> compare_with) {
                            return findings_->Range(compare_with, WatchOf(DensifyStep::kRange));
-                         }));
+                         },
+                         {NameOf(DensifyStep::kRange), options_.interrupted}));
   work_.Plan(light_field_, options_.choices, plan_);
   report_.dense = plan_.dense;
   report_.recorded_count = light_field_.size();

@@ -17,6 +17,7 @@
 #include "lf/densify/camera_lattice.h"
 #include "lf/densify/camera_plane.h"
 #include "lf/densify/depth_search.h"
+#include "lf/densify/film_blur.h"
 #include "lf/densify/lens_places.h"
 #include "lf/densify/pair_map.h"
 #include "lf/densify/working_image.h"
@@ -92,8 +93,8 @@ Result<void> CheckReach(const LightField& light_field, const DensifyPlan& plan, 
   return {};
 }
 
-// Returns the distance between LF cameras that brings about a spacing in a frame, or in virtual LF
-// images if there are no frames.
+// Returns the distance between LF cameras at which copies of points at the ends of the scene have
+// the wanted spacing, in a frame, or in virtual LF images if there are no frames.
 double DistanceFor(const LightField& light_field, const DensifyPlan& plan,
                    const DensifyChoices& choices) {
   const double f_px = light_field.Camera(LfImageId{0}).intrinsics.fx_px / choices.divisor;
@@ -107,6 +108,26 @@ double DistanceFor(const LightField& light_field, const DensifyPlan& plan,
     least = std::min(least, choices.spacing_px / (frame.pinhole.intrinsics.fx_px * away));
   }
   return least;
+}
+
+// Returns the distance between virtual LF cameras in the lenses of a film. A capture around an
+// object has depths that no frame shows, so that points in the frames count, unless the user has
+// stated the depths.
+Result<double> DistanceInLenses(const LightField& light_field, const LfImageStore& store,
+                                const DensifyPlan& plan, const DensifyChoices& choices,
+                                ThreadPool& pool, const Watch& watch) {
+  constexpr double kLeastAcross = 4;  // virtual LF cameras across a lens
+  const double for_scene_w = DistanceFor(light_field, plan, choices);
+  if (choices.depths) return for_scene_w;
+  LF_ASSIGN_OR_RETURN(
+      const std::vector<std::vector<Vec3>> points,
+      FindSurePoints(light_field, store, plan.compare_with, plan.serving, pool, watch));
+  const std::optional<double> copies = CopiesPerDistance(choices.frames, points);
+  if (!copies) return for_scene_w;
+  double most_w = INFINITY;
+  for (const RenderCamera& frame : choices.frames)
+    most_w = std::min(most_w, 2 * frame.aperture.radius_w / kLeastAcross);
+  return std::max(for_scene_w, std::min(most_w, choices.spacing_px / *copies));
 }
 
 // Returns the light field of virtual LF cameras alone.
@@ -208,9 +229,10 @@ void FillLenses(const LightField& light_field, const DensifyChoices& choices,
 
 // Chooses the virtual LF cameras; if there are too many, they stand less densely.
 //   lenses  of the film; null: there is no film
-Result<void> ChooseVirtual(const LightField& light_field, const DensifyChoices& choices,
-                           const FilmLenses* lenses, ThreadPool& pool, DensifyPlan* plan) {
-  const double wanted_w = DistanceFor(light_field, *plan, choices);
+Result<void> ChooseVirtual(const LightField& light_field, const LfImageStore& store,
+                           const DensifyChoices& choices, const FilmLenses* lenses,
+                           ThreadPool& pool, const Watch& watch, DensifyPlan* plan) {
+  double wanted_w = DistanceFor(light_field, *plan, choices);
   // The mean distance of compared LF cameras; rows may be farther apart than columns.
   const double recorded_w = plan->shift_per_depth_px /
                             light_field.Camera(LfImageId{0}).intrinsics.fx_px * choices.divisor;
@@ -221,10 +243,13 @@ Result<void> ChooseVirtual(const LightField& light_field, const DensifyChoices& 
         recorded_w, wanted_w, choices.spacing_px * recorded_w / wanted_w);
     return {};
   }
-  if (lenses)
+  if (lenses) {
+    LF_ASSIGN_OR_RETURN(wanted_w,
+                        DistanceInLenses(light_field, store, *plan, choices, pool, watch));
     FillLenses(light_field, choices, *lenses, wanted_w, pool, plan);
-  else
+  } else {
     LF_RETURN_IF_ERROR(FillCapture(light_field, choices, wanted_w, plan));
+  }
   plan->spacing_px = choices.spacing_px * plan->distance_w / wanted_w;
   const bool has_places = !lenses || std::isinf(plan->filled_radius_w);
   if (plan->virtual_cameras.empty() && has_places)
@@ -305,7 +330,7 @@ double ToleranceFor(const InverseDepths& range, int planes, double shift_per_dep
 
 Result<DensifyPlan> PlanDensify(const LightField& light_field, const LfImageStore& store,
                                 const DensifyChoices& choices, ThreadPool& pool,
-                                const RangeSearch& search) {
+                                const RangeSearch& search, const Watch& watch) {
   DensifyPlan plan;
   plan.is_film = !choices.frames.empty();
   plan.divisor = choices.divisor;
@@ -333,7 +358,8 @@ Result<DensifyPlan> PlanDensify(const LightField& light_field, const LfImageStor
   LF_RETURN_IF_ERROR(CheckReach(light_field, plan, choices.divisor, choices.force));
   plan.planes = PlanesFor(plan.ShiftPx());
   plan.tolerance = ToleranceFor(plan.range, plan.planes, plan.shift_per_depth_px);
-  LF_RETURN_IF_ERROR(ChooseVirtual(light_field, choices, lenses ? &*lenses : nullptr, pool, &plan));
+  LF_RETURN_IF_ERROR(
+      ChooseVirtual(light_field, store, choices, lenses ? &*lenses : nullptr, pool, watch, &plan));
   if (lenses) plan.shown = lenses->Recorded(plan.distance_w);
   FindSources(&plan);
   return plan;

@@ -17,6 +17,7 @@
 #include "lf/core/result.h"
 #include "lf/densify/inverse_depths.h"
 #include "lf/densify/virtual_cameras.h"
+#include "lf/densify/watched_loop.h"
 #include "lf/light_field/model/light_field.h"
 #include "lf/storage/load/lf_image_store.h"
 
@@ -27,8 +28,9 @@ struct DensifyChoices {
   // in the LF images (FindInverseDepths()).
   std::optional<DepthRange> depths;
   // Largest distance between neighbouring copies of a point that is out of focus: in elements of
-  // the frames if there are any, otherwise in pixels of the virtual LF images, for a focus at one
-  // end of the scene and a point at the other.
+  // the frames, for most points that these show (film_blur.h), or for the ends of `depths`; without
+  // frames, in pixels of the virtual LF images, for a focus at one end of the scene and a point at
+  // the other.
   double spacing_px = 1.5;
   size_t most_virtual = 2000;  // if more virtual LF images are needed, they stand less densely
   int divisor = 1;             // a pixel of a virtual LF image is divisor x divisor LF pixels
@@ -90,13 +92,14 @@ using RangeSearch =
 // Makes the plan, or says why the light field cannot be densified.
 //   store   of the light field, with Mosaics::kToRgb
 //   search  in place of FindInverseDepths(), if it is given
+//   watch   of the search for points that the frames show
 // kInput: LF images too far from one another (the message has the shift or the angle); without
 // frames, fewer than three LF cameras, or all on one line, or all around the scene; or an error of
 // FindInverseDepths(). kUsage: no virtual LF image contributes to the frames, or most_virtual is
 // too small.
 Result<DensifyPlan> PlanDensify(const LightField& light_field, const LfImageStore& store,
                                 const DensifyChoices& choices, ThreadPool& pool,
-                                const RangeSearch& search = {});
+                                const RangeSearch& search = {}, const Watch& watch = {});
 
 // Returns true if virtual LF cameras stand beyond the hull of the recorded ones.
 bool IsWidened(const DensifyPlan& plan);

@@ -16,7 +16,7 @@ constexpr const char* kNames[kDensifyStepCount] = {"checked LF images",  "search
                                                    "stored depths",      "virtual LF images"};
 
 // In comparisons for each pixel; measured on photographs of 1 megapixel.
-constexpr double kLoading = 6, kEncoding = 12, kSynthesis = 160, kAgreeing = 20;
+constexpr double kLoading = 6, kEncoding = 12, kSynthesis = 72, kAgreeing = 20;
 // Widths of LF images that are reduced for the search and the tests, and for pairs.
 constexpr double kReducedWidth = 200, kPairWidth = 100;
 

@@ -33,10 +33,16 @@ int GoodCost(const Image<uint16_t>& tones, const ChosenPlanes& chosen) {
   return costs.empty() ? kGood : std::max(kGood, static_cast<int>(Median(std::move(costs))));
 }
 
-// Appends the inverse depths of the pixels of one LF image that are sure.
+// A pixel of an LF image with a sure depth.
+struct SurePixel {
+  Vec3 point_camera;  // (x, y, 1) in camera axes, on the ray of the pixel
+  double inverse_depth = 0;
+};
+
+// Appends the pixels of one LF image that are sure.
 void AppendSure(const LightField& light_field, const std::optional<Vec3>& subject,
                 const WorkingImage& reference, std::span<const SweepView> views,
-                InterruptFlag interrupted, std::vector<double>* found) {
+                InterruptFlag interrupted, std::vector<SurePixel>* found) {
   constexpr double kLeastStep_px = 0.5;
   constexpr int kMostSearched = 220;
   constexpr int kClear = 6;
@@ -60,13 +66,15 @@ void AppendSure(const LightField& light_field, const std::optional<Vec3>& subjec
   // a far end that means something.
   const auto first = light_field.depth_range ? -1.0f : 2.0f;
   const auto last = static_cast<float>(planes - 3);
+  const Mat3 direction_of_pixel = reference.camera.intrinsics.InverseMatrix();
   for (int y = kSearchedBorder; y < reference.height() - kSearchedBorder; ++y)
     for (int x = kSearchedBorder; x < reference.width() - kSearchedBorder; ++x)
       if (TextureAt(reference.tones, x, y) > kTexture && chosen.cost.at(x, y) < good &&
           chosen.lead.at(x, y) > kClear && chosen.place.at(x, y) > first &&
           chosen.place.at(x, y) < last)
-        found->push_back(range.least +
-                         static_cast<double>(chosen.place.at(x, y)) * extent / (planes - 1));
+        found->push_back(
+            {direction_of_pixel * Vec3(x + 0.5, y + 0.5, 1),
+             range.least + static_cast<double>(chosen.place.at(x, y)) * extent / (planes - 1)});
 }
 
 double Quantile(std::span<const double> sorted, double share) {
@@ -101,6 +109,42 @@ InverseDepths RangeOf(std::vector<std::vector<double>> of_images) {
   return {few_beyond ? std::max(0.0, least - margin) : least - margin, greatest + margin};
 }
 
+// The sure pixels of an LF image.
+struct SurePixels {
+  RigidTransform cam_from_world;
+  std::vector<SurePixel> pixels;
+};
+
+// Searches eight of the LF images `ids`, spread over these.
+Result<std::vector<SurePixels>> SearchSure(const LightField& light_field, const LfImageStore& store,
+                                           std::span<const std::vector<uint32_t>> compare_with,
+                                           std::span<const uint32_t> ids, ThreadPool& pool,
+                                           const Watch& watch) {
+  const int divisor = std::max(1, light_field.intrinsics.front().width_px / kSearchedWidth);
+  WorkingImages images(light_field, store, divisor, std::numeric_limits<size_t>::max());
+  const std::optional<Vec3> subject = AxesMeetingPoint(light_field);
+  const size_t count = std::min(kReferences, ids.size());
+  std::vector<SurePixels> sure(count);
+  LF_RETURN_IF_ERROR(ForEachWatched(pool, count, watch, [&](size_t i) -> Result<void> {
+    const uint32_t id = ids[count == 1 ? 0 : i * (ids.size() - 1) / (count - 1)];
+    std::vector<std::shared_ptr<const WorkingImage>> loaded;
+    std::vector<uint32_t> wanted{id};
+    const std::vector<uint32_t>& others = compare_with[id];
+    wanted.insert(wanted.end(), others.begin(),
+                  others.begin() + static_cast<ptrdiff_t>(std::min(kMostViews, others.size())));
+    for (const uint32_t one : wanted) {
+      LF_ASSIGN_OR_RETURN(auto image, images.Get(LfImageId{one}));
+      loaded.push_back(std::move(image));
+    }
+    std::vector<SweepView> views;
+    for (size_t k = 1; k < loaded.size(); ++k) views.push_back(ViewFrom(*loaded[0], *loaded[k]));
+    sure[i].cam_from_world = loaded[0]->camera.cam_from_world;
+    AppendSure(light_field, subject, *loaded[0], views, watch.interrupted, &sure[i].pixels);
+    return {};
+  }));
+  return sure;
+}
+
 }  // namespace
 
 InverseDepths SearchedRange(const PinholeCamera& camera, double shift_per_depth_px,
@@ -123,35 +167,40 @@ Result<InverseDepths> FindInverseDepths(const LightField& light_field, const LfI
                                         std::span<const std::vector<uint32_t>> compare_with,
                                         ThreadPool& pool, const Watch& watch) {
   constexpr size_t kLeastDepths = 200;
-  const int divisor = std::max(1, light_field.intrinsics.front().width_px / kSearchedWidth);
-  WorkingImages images(light_field, store, divisor, std::numeric_limits<size_t>::max());
-  const std::optional<Vec3> subject = AxesMeetingPoint(light_field);
-  const size_t count = std::min(kReferences, light_field.size());
-  std::vector<std::vector<double>> depths(count);
-  LF_RETURN_IF_ERROR(ForEachWatched(pool, count, watch, [&](size_t i) -> Result<void> {
-    const size_t id = count == 1 ? 0 : i * (light_field.size() - 1) / (count - 1);
-    std::vector<std::shared_ptr<const WorkingImage>> loaded;
-    std::vector<uint32_t> wanted{static_cast<uint32_t>(id)};
-    const std::vector<uint32_t>& others = compare_with[id];
-    wanted.insert(wanted.end(), others.begin(),
-                  others.begin() + static_cast<ptrdiff_t>(std::min(kMostViews, others.size())));
-    for (const uint32_t one : wanted) {
-      LF_ASSIGN_OR_RETURN(auto image, images.Get(LfImageId{one}));
-      loaded.push_back(std::move(image));
-    }
-    std::vector<SweepView> views;
-    for (size_t k = 1; k < loaded.size(); ++k) views.push_back(ViewFrom(*loaded[0], *loaded[k]));
-    AppendSure(light_field, subject, *loaded[0], views, watch.interrupted, &depths[i]);
-    return {};
-  }));
+  std::vector<uint32_t> ids(light_field.size());
+  std::iota(ids.begin(), ids.end(), 0U);
+  LF_ASSIGN_OR_RETURN(const std::vector<SurePixels> sure,
+                      SearchSure(light_field, store, compare_with, ids, pool, watch));
+  std::vector<std::vector<double>> depths;
+  for (const SurePixels& of_image : sure) {
+    depths.emplace_back();
+    for (const SurePixel& pixel : of_image.pixels) depths.back().push_back(pixel.inverse_depth);
+  }
   size_t found = 0;
   for (const std::vector<double>& of_image : depths) found += of_image.size();
   if (found < kLeastDepths)
     return InputError(fmt::format(
         "depths of the scene: only {} pixels of {} LF images have a sure depth, expected at least "
         "{}: the LF images overlap too little or lack texture; state the depths by {{depths}}",
-        found, count, kLeastDepths));
+        found, depths.size(), kLeastDepths));
   return RangeOf(std::move(depths));
+}
+
+Result<std::vector<std::vector<Vec3>>> FindSurePoints(
+    const LightField& light_field, const LfImageStore& store,
+    std::span<const std::vector<uint32_t>> compare_with, std::span<const uint32_t> ids,
+    ThreadPool& pool, const Watch& watch) {
+  LF_ASSIGN_OR_RETURN(const std::vector<SurePixels> sure,
+                      SearchSure(light_field, store, compare_with, ids, pool, watch));
+  std::vector<std::vector<Vec3>> points;
+  for (const SurePixels& of_image : sure) {
+    const RigidTransform world_from_cam = of_image.cam_from_world.Inverse();
+    points.emplace_back();
+    for (const SurePixel& pixel : of_image.pixels)
+      if (pixel.inverse_depth > 0)
+        points.back().push_back(world_from_cam * (pixel.point_camera / pixel.inverse_depth));
+  }
+  return points;
 }
 
 }  // namespace lf

@@ -43,4 +43,11 @@ Result<InverseDepths> FindInverseDepths(const LightField& light_field, const LfI
                                         std::span<const std::vector<uint32_t>> compare_with,
                                         ThreadPool& pool, const Watch& watch = {});
 
+// Returns such pixels of eight of the LF images `ids`, spread over these, as points of the scene in
+// world coordinates, [LF image][point], without pixels beyond infinity.
+Result<std::vector<std::vector<Vec3>>> FindSurePoints(
+    const LightField& light_field, const LfImageStore& store,
+    std::span<const std::vector<uint32_t>> compare_with, std::span<const uint32_t> ids,
+    ThreadPool& pool, const Watch& watch = {});
+
 }  // namespace lf

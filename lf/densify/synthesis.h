@@ -66,7 +66,7 @@ inline constexpr size_t kMostSources = 8;
 const VirtualImage& Synthesize(const PinholeCamera& camera, std::span<const Source> sources,
                                const InverseDepths& range, double tolerance,
                                InterruptFlag interrupted, SynthesisMemory* memory);
-// The same, in memory of its own.
+// Makes such an image in memory of its own.
 VirtualImage Synthesize(const PinholeCamera& camera, std::span<const Source> sources,
                         const InverseDepths& range, double tolerance,
                         InterruptFlag interrupted = nullptr);
