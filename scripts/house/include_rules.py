@@ -20,7 +20,7 @@ OWNERS = {
     "lcms2.h": {"pixels/files"},
     "yaml-cpp/": {"camera/path"},
     "nlohmann/": {"camera/path", "densify", "distribute/compress", "distribute/preprocess", "film/compare",
-                  "import/formats", "import/report", "light_field/transforms_json", "render/state"},
+                  "import/exports", "import/formats", "import/report", "light_field/transforms_json", "render/state"},
     "simdjson": {"light_field/transforms_json"},
     "tbb/": {"core"},
     "hwy/": {"pixels/codec", "collection", "collection/prefilter", "densify", "rebinning", "storage/load",

@@ -13,7 +13,8 @@
 
 #include "lf/core/log.h"
 #include "lf/core/shell_word.h"
-#include "lf/import/formats/import_limits.h"
+#include "lf/import/exports/export_forms.h"
+#include "lf/import/exports/import_limits.h"
 #include "lf/import/formats/read_aos.h"
 #include "lf/import/formats/read_hci.h"
 #include "lf/import/formats/read_llff.h"
@@ -113,9 +114,26 @@ Result<LightField> OpenPackedStore(const fs::path& path, const OpenOptions& opti
   return std::move(facts.light_field);
 }
 
+// Returns kUsage if an option is given that the exports of other programs do not need.
+Result<void> CheckExportOptions(const fs::path& path, const OpenOptions& options) {
+  LF_RETURN_IF_ERROR(CheckNoStanfordOptions(path, options));
+  return CheckNoFov(path, options);
+}
+
+// Opens an export of another program. Returns nullopt if the file is none.
+std::optional<Result<LightField>> OpenExport(const fs::path& path, const OpenOptions& options) {
+  if (ExportFormOf(path) == nullptr) return std::nullopt;
+  if (Result<void> result = CheckExportOptions(path, options); !result) return result.error();
+  return OpenExportFile(path, {.images_folder = options.images_folder});
+}
+
 // Opens a calibration file or packed store. Returns nullopt if its name is of no known kind.
 std::optional<Result<LightField>> OpenFile(const fs::path& path, const OpenOptions& options) {
-  if (path.extension() == ".json" && IsAosFile(path)) return OpenAos(path, options);
+  const bool is_json = path.extension() == ".json";
+  if (is_json && IsAosFile(path)) return OpenAos(path, options);
+  // An export is told from a transforms.json by the words in it.
+  if (is_json && !path.filename().string().starts_with("transforms"))
+    if (std::optional<Result<LightField>> opened = OpenExport(path, options)) return opened;
   if (path.extension() == kStoreExtension) return OpenPackedStore(path, options);
   const std::optional<fs::path>& images = options.images_folder;
   const struct {
@@ -123,8 +141,7 @@ std::optional<Result<LightField>> OpenFile(const fs::path& path, const OpenOptio
     const char* name;
     std::function<Result<LightField>()> read;
   } kinds[] = {
-      {path.extension() == ".json", "transforms.json",
-       [&] { return ReadTransformsJson(path, images); }},
+      {is_json, "transforms.json", [&] { return ReadTransformsJson(path, images); }},
       {path.extension() == ".npy", "LLFF poses", [&] { return ReadLlff(path, images); }},
       {path.extension() == ".cfg", "parameters of the 4D Light Field Benchmark",
        [&] { return ReadHci(path); }},
@@ -138,7 +155,7 @@ std::optional<Result<LightField>> OpenFile(const fs::path& path, const OpenOptio
     LogDebug("{}: opened as {}", path.string(), kind.name);
     return kind.read();
   }
-  return std::nullopt;
+  return OpenExport(path, options);
 }
 
 Result<LightField> OpenSplits(const std::vector<fs::path>& files, const OpenOptions& options) {
@@ -366,9 +383,9 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
         fmt::format("{}: is not a light field: expected a transforms.json, a NAME_par.txt "
                     "(Middlebury), a poses_bounds.npy (LLFF), a parameters.cfg (4D Light Field "
                     "Benchmark), a poses.json (AOS), a packed store "
-                    "(STORE.lfs) or the folder of one, the folder of a COLMAP model, or a folder "
-                    "of images",
-                    path.string()));
+                    "(STORE.lfs) or the folder of one, the folder of a COLMAP model, a folder "
+                    "of images, or an export of another program ({})",
+                    path.string(), ListOfExportForms()));
   }
   // Options that only names need ask for the names.
   const bool passes_over =
@@ -408,13 +425,20 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
     return InputError(fmt::format(
         "{}: holds several packed stores, such as {} and {}: give the path of one of them",
         path.string(), stores[0].filename().string(), stores[1].filename().string()));
-  const std::string below = LightFieldsBelow(path);
+  if (!ExportsIn(path, /*reads=*/true).empty()) {
+    LF_RETURN_IF_ERROR(CheckExportOptions(path, options));
+    return *OpenExportIn(path, {.images_folder = options.images_folder});
+  }
+  std::string hint = LightFieldsBelow(path);
+  if (hint.empty()) hint = AdviceOnExportsIn(path);
+  if (hint.empty()) hint = PhotographsIn(path) + series;
   return InputError(fmt::format(
       "{}: holds no light field: looked for {}, a COLMAP model in it or in sparse/0, NAME_par.txt, "
-      "{}, {}, {} (AOS), one packed store NAME.lfs, and for images named "
-      "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext or NAME_ROW_COL.ext in it and in {}/{}{}",
+      "{}, {}, {} (AOS), one packed store NAME.lfs, for images named "
+      "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext or NAME_ROW_COL.ext in it and in {}/, and for exports "
+      "of other programs ({}){}{}",
       path.string(), kCalibrationName, kLlffName, kHciName, kAosName, kImagesName,
-      OtherCalibrations(path), below.empty() ? PhotographsIn(path) + series : below));
+      ListOfExportForms(), OtherCalibrations(path), hint));
 }
 
 // Warns if none of the image files is there, and the folder also holds a COLMAP model or another
@@ -426,7 +450,10 @@ void WarnOfOtherCalibration(const fs::path& path, const LightField& light_field)
     return;
   const Result<std::optional<fs::path>> model = FindColmapModel(path, /*warns=*/false);
   const Result<std::optional<fs::path>> other = OtherCalibrationIn(path);
-  const auto& found = model && *model ? model : other;
+  Result<std::optional<fs::path>> found = model && *model ? model : other;
+  if (const std::vector<FoundExport> exports = ExportsIn(path, /*reads=*/true);
+      found && !*found && !exports.empty())
+    found = std::optional(exports[0].files[0]);
   if (!found || !*found) return;
   LogWarning(
       "{}: none of the image files that it names is there, such as {}; {} may belong to the images "
@@ -443,7 +470,7 @@ bool HoldsLightField(const fs::path& folder) {
   if (model && *model) return true;
   const Result<std::optional<fs::path>> calibration = CalibrationIn(folder);
   return !calibration || *calibration || !SplitsIn(folder).empty() || HoldsGrid(folder) ||
-         !PackedStoresIn(folder).empty();
+         !PackedStoresIn(folder).empty() || !ExportsIn(folder, /*reads=*/true).empty();
 }
 
 bool HoldsOwnAndItsSource(const fs::path& folder) {
@@ -454,7 +481,8 @@ bool HoldsOwnAndItsSource(const fs::path& folder) {
   const Result<std::optional<fs::path>> model = FindColmapModel(folder);
   if (model && *model) return true;
   const Result<std::optional<fs::path>> other = OtherCalibrationIn(folder);
-  return (other && *other) || !SplitsIn(folder).empty() || HoldsGrid(folder);
+  return (other && *other) || !SplitsIn(folder).empty() || HoldsGrid(folder) ||
+         !ExportsIn(folder, /*reads=*/true).empty();
 }
 
 Result<std::vector<Vec3>> PointsSeenBy(const fs::path& path, const LightField& light_field,

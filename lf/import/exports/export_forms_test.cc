@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lf/import/exports/export_forms.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "lf/core/file.h"
+#include "lf/pixels/files/test_folder.h"
+
+namespace lf {
+namespace {
+namespace fs = std::filesystem;
+
+void Write(const fs::path& file, std::string_view text) {
+  ASSERT_TRUE(CreateFolder(file.parent_path()));
+  ASSERT_TRUE(WriteFileAtomically(file, text));
+}
+
+TEST(ExportForms, EveryRowIsReadOrAdvised) {
+  std::set<std::string_view> names;
+  bool reads = true;
+  for (const ExportForm& form : ExportForms()) {
+    EXPECT_TRUE(names.insert(form.name).second) << form.name;
+    EXPECT_EQ(form.read == nullptr, !form.advice.empty()) << form.name;
+    EXPECT_EQ(form.read == nullptr, form.listed.empty()) << form.name;
+    EXPECT_FALSE(form.places.empty()) << form.name;
+    // Forms that are read come first.
+    EXPECT_TRUE(reads || form.read == nullptr) << form.name;
+    reads = form.read != nullptr;
+  }
+}
+
+using ExportFolder = FolderTest;
+
+TEST_F(ExportFolder, HoldsFilesThatAreRecognisedByNameAndWords) {
+  Write(folder_ / "Photo.LFP", "\x89LFP\r\n\x1A\n...");
+  Write(folder_ / "package.lfp", "SQLite format 3");
+  const std::optional<Result<LightField>> opened = OpenExportFile(folder_ / "Photo.LFP", {});
+  ASSERT_TRUE(opened.has_value());
+  ASSERT_FALSE(*opened);
+  const std::string& message = opened->error().message;
+  EXPECT_NE(message.find("Photo.LFP: is not a light field, but a photograph of a Lytro camera"),
+            std::string::npos);
+  EXPECT_NE(message.find("plenopticam"), std::string::npos) << message;
+  EXPECT_NE(message.find("LFToolbox"), std::string::npos) << message;
+  EXPECT_EQ(ExportFormOf(folder_ / "package.lfp"), nullptr);
+  EXPECT_EQ(ExportFormOf(folder_ / "none.psx"), ExportFormOf("project.psx"));
+  EXPECT_NE(ExportFormOf("project.psx"), nullptr);
+}
+
+TEST_F(ExportFolder, HoldsFilesThatAreFoundByThePatternsOfTheirPaths) {
+  EXPECT_TRUE(ExportsIn(folder_, false).empty());
+  Write(folder_ / "b.ply", "ply");
+  Write(folder_ / "a.ply", "ply");
+  Write(folder_ / ".hidden.ply", "ply");
+  Write(folder_ / "scan.psx", "");
+  Write(folder_ / "MeshroomCache" / "StructureFromMotion" / "0ab" / "sfm.abc", "");
+  const std::vector<FoundExport> found = ExportsIn(folder_, false);
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_EQ(found[0].files, (std::vector<fs::path>{folder_ / "scan.psx"}));
+  const std::string advice = AdviceOnExportsIn(folder_);
+  EXPECT_TRUE(advice.starts_with("; " + (folder_ / "scan.psx").string() + " is a project of "))
+      << advice;
+  EXPECT_EQ(found[1].files[0].filename(), "sfm.abc");
+  EXPECT_EQ(found[2].files, (std::vector<fs::path>{folder_ / "a.ply", folder_ / "b.ply"}));
+}
+
+}  // namespace
+}  // namespace lf

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rows of ExportForms(), apart from the functions that look for them.
+#include "lf/import/exports/export_forms.h"
+
+namespace lf {
+namespace {
+
+// Adds the rows of forms that are read. A form whose files may lie beside those of another one,
+// from which they were made, comes after it.
+void AddFormsThatAreRead(std::vector<ExportForm>* forms) { (void)forms; }
+
+// Adds the rows of forms that are not read. Each advice ends a message, and leads to a form that is
+// read.
+void AddFormsThatAreNotRead(std::vector<ExportForm>* forms) {
+  forms->push_back({
+      .name = "a photograph of a Lytro camera, which is decoded by other programs",
+      .places = {"*.lfr", "*.lfp"},
+      .words = {"\x89LFP\r\n\x1A\n"},
+      .advice = "decode it by plenopticam, or by LFToolbox for Matlab, and give the folder of the "
+                "views that they write",
+  });
+  forms->push_back({
+      .name = "a project of Metashape, which is read only by Metashape itself",
+      .places = {"*.psx", "*.psz"},
+      .advice = "open it in Metashape and save the cameras by File > Export > Export Cameras as "
+                "Agisoft XML, or as Bundler",
+  });
+  forms->push_back({
+      .name = "a project of RealityCapture or RealityScan, which is read only by these programs",
+      .places = {"*.rcproj", "*.rsproj"},
+      .advice = "open it there, and save the cameras by Alignment > Export > Registration as "
+                "Bundler, COLMAP, or internal and external camera parameters (CSV or XMP)",
+  });
+  forms->push_back({
+      .name = "a project of Meshroom, which leads to the cameras but does not hold them",
+      .places = {"*.mg"},
+      .words = {"StructureFromMotion"},
+      .advice = "compute its StructureFromMotion node, and give the cameras.sfm in "
+                "MeshroomCache/StructureFromMotion",
+  });
+  forms->push_back({
+      .name = "a scene of AliceVision in Alembic's form, which is not read",
+      .places = {"*.abc", "MeshroomCache/StructureFromMotion/*/sfm.abc"},
+      .advice = "convert it by Meshroom's node ConvertSfMFormat to sfm, or give the cameras.sfm "
+                "beside it",
+  });
+  forms->push_back({
+      .name = "a scene of OpenMVG in its binary form, which is not read",
+      .places = {"sfm_data.bin", "reconstruction/sfm_data.bin", "*/sfm_data.bin"},
+      .advice = "convert it: openMVG_main_ConvertSfM_DataFormat -i sfm_data.bin -o sfm_data.json "
+                "-V -I -E",
+  });
+  forms->push_back({
+      .name = "a database of COLMAP, which holds features but no poses",
+      .places = {"database.db"},
+      .words = {"SQLite format 3", "two_view_geometries"},
+      .advice = "let COLMAP reconstruct the poses from it: mkdir sparse && colmap mapper "
+                "--database_path database.db --image_path images --output_path sparse",
+  });
+  forms->push_back({
+      .name = "a scene of Blender, which is read only by Blender itself",
+      .places = {"*.blend"},
+      .advice = "let the add-on of lfrendertools photograph it (doc/blender.md)",
+  });
+  forms->push_back({
+      .name = "a scene of USD, which holds no photographs with their poses",
+      .places = {"*.usdz", "*.usd", "*.usda", "*.usdc"},
+      .advice = "export the photographs and their cameras from the program that made it",
+  });
+  forms->push_back({
+      .name = "an array of Matlab, which is not read",
+      .places = {"*.mat"},
+      .words = {"MATLAB"},
+      .advice = "write its views as image files by imwrite, with the names NAME_ROW_COL.png, and "
+                "give their folder",
+  });
+  forms->push_back({
+      .name = "a point cloud or a splat model, which holds no photographs with their poses",
+      .places = {"*.ply", "*.splat", "*.spz", "*.ksplat"},
+      .advice = "give the folder of the photographs and of the poses from which it was made, such "
+                "as the cameras.json that programs of 3D Gaussian splatting write beside it",
+  });
+  forms->push_back({
+      .name = "an archive, which is not looked into",
+      .places = {"*.zip", "*.tar", "*.tar.gz", "*.tgz", "*.7z"},
+      .advice = "unpack it, and give the folder",
+  });
+}
+
+}  // namespace
+
+std::span<const ExportForm> ExportForms() {
+  static const std::vector<ExportForm> forms = [] {
+    std::vector<ExportForm> rows;
+    AddFormsThatAreRead(&rows);
+    AddFormsThatAreNotRead(&rows);
+    return rows;
+  }();
+  return forms;
+}
+
+}  // namespace lf
