@@ -21,6 +21,7 @@ OWNERS = {
     "yaml-cpp/": {"camera/path"},
     "nlohmann/": {"camera/path", "densify", "distribute/compress", "distribute/preprocess", "film/compare",
                   "import/exports", "import/formats", "import/report", "light_field/transforms_json", "render/state"},
+    "pugixml": {"import/exports"},
     "simdjson": {"light_field/transforms_json"},
     "tbb/": {"core"},
     "hwy/": {"pixels/codec", "collection", "collection/prefilter", "densify", "rebinning", "storage/load",

@@ -112,16 +112,24 @@ Result<void> CheckImages(const ExportedCameras& cameras, const fs::path& file) {
   return {};
 }
 
-void SetSize(const Size& size, bool counts_from_middle, Intrinsics* k) {
+void SetSize(const Size& size, const ExportedCameras& cameras, Intrinsics* k) {
   k->width_px = size[0];
   k->height_px = size[1];
-  if (!counts_from_middle) return;
+  if (cameras.in_larger_sides)
+    for (double* const length : {&k->fx_px, &k->fy_px, &k->cx_px, &k->cy_px, &k->skew_px})
+      *length *= std::max(size[0], size[1]);
+  if (!cameras.counts_from_middle) return;
   k->cx_px += 0.5 * size[0];
   k->cy_px += 0.5 * size[1];
 }
 
+// Returns true if an image file must be looked at to know all about an image.
+bool NeedsFile(const ExportedImage& image) {
+  return !HasSize(image.intrinsics) || !IsImageName(image.name);
+}
+
 // Finds the image files, and completes the images without a size.
-Result<void> FindSizes(const ExportOptions& options, const fs::path& file,
+Result<void> FindFiles(const ExportOptions& options, const fs::path& file,
                        ExportedCameras* cameras) {
   LightField names;  // only what FindImageFiles() changes
   names.folder = cameras->folder;
@@ -143,8 +151,8 @@ Result<void> FindSizes(const ExportOptions& options, const fs::path& file,
       continue;
     }
     if (!first) first = *size;
-    SetSize(*size, cameras->counts_from_middle, &image.intrinsics);
-    if (const Result<void> checked = CheckSize(image.intrinsics); !checked)
+    SetSize(*size, *cameras, &image.intrinsics);
+    if (const Result<void> checked = CheckImage(image); !checked)
       return InputError(fmt::format("{}: {}", PlaceOf(image, i, file), checked.error().message));
   }
   cameras->folder = names.folder;
@@ -155,7 +163,7 @@ Result<void> FindSizes(const ExportOptions& options, const fs::path& file,
                     "found, such as {}{}: give their folder ({{images}})",
                     file.string(), path.string(), FilesNearby(path)));
   }
-  for (Intrinsics* const k : without_file) SetSize(*first, cameras->counts_from_middle, k);
+  for (Intrinsics* const k : without_file) SetSize(*first, *cameras, k);
   return {};
 }
 
@@ -164,9 +172,8 @@ Result<void> FindSizes(const ExportOptions& options, const fs::path& file,
 Result<LightField> FinishExport(ExportedCameras cameras, const fs::path& file,
                                 const ExportOptions& options) {
   LF_RETURN_IF_ERROR(CheckImages(cameras, file));
-  if (std::any_of(cameras.images.begin(), cameras.images.end(),
-                  [](const ExportedImage& image) { return !HasSize(image.intrinsics); }))
-    LF_RETURN_IF_ERROR(FindSizes(options, file, &cameras));
+  if (std::any_of(cameras.images.begin(), cameras.images.end(), NeedsFile))
+    LF_RETURN_IF_ERROR(FindFiles(options, file, &cameras));
   LightField light_field;
   light_field.folder = cameras.folder;
   light_field.depth_range = cameras.depth_range;

@@ -36,9 +36,10 @@ struct ExportedCameras {
   std::filesystem::path folder;  // where the names of the images lead from
   std::optional<DepthRange> depth_range;
   double unit_m = 1;  // metres per world unit
-  // The next two describe images whose size is not stated.
+  // The next three describe images whose size is not stated.
   SizesFrom sizes_from = SizesFrom::kFirstImage;
   bool counts_from_middle = false;  // their cx_px and cy_px are offsets from the image's middle
+  bool in_larger_sides = false;     // their lengths are shares of the image's larger side
 };
 
 // What a reader is told besides the file.
@@ -50,8 +51,9 @@ struct ExportOptions {
 };
 
 // Returns a light field with the images in their order, distinct intrinsics, the folder, the depth
-// range and DefaultMaxRadiance() of the names. If a size is not stated, the image files are found
-// by FindImageFiles(), which changes names and folder, and read by options.image_size.
+// range and DefaultMaxRadiance() of the names. If a size or the extension of a name is not stated,
+// the image files are found by FindImageFiles(), which changes names and folder. Sizes are read by
+// options.image_size.
 //   file  for messages
 // kInput names the file, the image and the value: no images, or more than kMaxImageCount; a name
 // that is empty, longer than 4096 bytes, holds a NUL character or occurs twice; a focal length

@@ -134,7 +134,48 @@ TEST(FinishExport, CountsFromTheMiddleOfEachImage) {
   ExpectExportError(cameras, "does not state the sizes of the images", {.image_size = refuses});
 }
 
+// RealityCapture states lengths as shares of the larger side of each image.
+TEST(FinishExport, ScalesByTheLargerSideOfEachImage) {
+  ExportedCameras cameras = TwoCameras();
+  for (ExportedImage& image : cameras.images) {
+    Intrinsics& k = image.intrinsics;
+    k.width_px = k.height_px = 0;
+    k.fx_px = k.fy_px = 0.75;
+    k.cx_px = 0.01;
+    k.cy_px = -0.02;
+  }
+  cameras.sizes_from = SizesFrom::kEachImage;
+  cameras.counts_from_middle = cameras.in_larger_sides = true;
+  const ExportOptions options = {.image_size = [](const fs::path& path) {
+    return Result(path == "f/a.png" ? std::array{200, 100} : std::array{100, 400});
+  }};
+  const Result<LightField> light_field = FinishExport(cameras, "f/export", options);
+  ASSERT_TRUE(light_field) << light_field.error().message;
+  const Intrinsics first = light_field->Camera({0}).intrinsics;
+  EXPECT_EQ(first.fx_px, 150);
+  EXPECT_EQ(first.cx_px, 102);
+  EXPECT_EQ(first.cy_px, 46);
+  const Intrinsics second = light_field->Camera({1}).intrinsics;
+  EXPECT_EQ(second.fy_px, 300);
+  EXPECT_EQ(second.cx_px, 54);
+  EXPECT_EQ(second.cy_px, 192);
+}
+
 using ExportFiles = FolderTest;
+
+// Without the extension, nobody knows that the image is of floating point, and may be brighter than
+// white.
+TEST_F(ExportFiles, TellTheExtensionThatANameLacks) {
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "a.exr", "x"));
+  ExportedCameras cameras = TwoCameras();
+  cameras.folder = folder_;
+  cameras.images.resize(1);
+  cameras.images[0].name = "a";
+  const Result<LightField> light_field = FinishExport(cameras, "f/export", {});
+  ASSERT_TRUE(light_field) << light_field.error().message;
+  EXPECT_EQ(light_field->image_names[0], "a.exr");
+  EXPECT_EQ(light_field->encoding.max_radiance, kFloatMaxRadiance);
+}
 
 TEST_F(ExportFiles, AreFoundWhereverTheyLieWhenTheirSizesAreNeeded) {
   fs::create_directory(folder_ / "images");
