@@ -2,6 +2,8 @@
 // The rows of ExportForms(), apart from the functions that look for them.
 #include "lf/import/exports/export_forms.h"
 #include "lf/import/exports/read_metashape.h"
+#include "lf/import/exports/read_reality_csv.h"
+#include "lf/import/exports/read_reality_xmp.h"
 
 namespace lf {
 namespace {
@@ -15,6 +17,28 @@ void AddFormsThatAreRead(std::vector<ExportForm>* forms) {
       .places = {"*.xml"},
       .words = {"<document", "<chunk", "<sensors"},
       .read = ReadMetashape,
+  });
+  forms->push_back({
+      .name = "camera parameters of RealityCapture or RealityScan",
+      .listed = "NAME.csv (RealityCapture, RealityScan)",
+      .places = {"*.csv"},
+      .words = {"name,", "pitch", "roll", "k1"},
+      .read = ReadRealityCsv,
+  });
+  forms->push_back({
+      .name = "camera parameters of RealityCapture or RealityScan in OpenCV's conventions",
+      .listed = "NAME.csv for OpenCV (RealityScan)",
+      .places = {"*.csv"},
+      .words = {"name,", "R00", "f_pix"},
+      .read = ReadRealityCsv,
+  });
+  forms->push_back({
+      .name = "XMP files of RealityCapture or RealityScan",
+      .listed = "NAME.xmp beside the images (RealityCapture, RealityScan)",
+      .places = {"*.xmp", "images/*.xmp"},
+      .words = {"http://www.capturingreality.com/ns/xcr"},
+      .has_parts = true,
+      .read = ReadRealityXmp,
   });
 }
 

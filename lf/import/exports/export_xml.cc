@@ -11,17 +11,17 @@
 namespace lf {
 namespace {
 
-constexpr size_t kMostTags = size_t{1} << 24;
-constexpr std::string_view kBlanks = " \t\r\n";
+constexpr size_t kMostXmlTags = size_t{1} << 24;
+constexpr std::string_view kXmlBlanks = " \t\r\n";
 
 std::string_view WithoutBlanks(std::string_view text) {
-  const size_t begin = text.find_first_not_of(kBlanks);
+  const size_t begin = text.find_first_not_of(kXmlBlanks);
   if (begin == text.npos) return {};
-  return text.substr(begin, text.find_last_not_of(kBlanks) + 1 - begin);
+  return text.substr(begin, text.find_last_not_of(kXmlBlanks) + 1 - begin);
 }
 
 // Returns a text in quotes, as messages show it, shortened if it is long.
-std::string Shown(std::string_view text) {
+std::string ShownText(std::string_view text) {
   constexpr size_t kLongest = 80;
   if (text.size() <= kLongest) return fmt::format("\"{}\"", text);
   return fmt::format("\"{}...\"", text.substr(0, kLongest));
@@ -53,12 +53,12 @@ std::string PlaceOf(pugi::xml_node node) {
 std::optional<std::vector<double>> NumbersIn(std::string_view text, size_t count, double most) {
   std::vector<double> numbers;
   for (text = WithoutBlanks(text); !text.empty();) {
-    const std::string_view word = text.substr(0, text.find_first_of(kBlanks));
+    const std::string_view word = text.substr(0, text.find_first_of(kXmlBlanks));
     const std::optional<double> number = ParseNumber(word);
     if (!number || !(std::abs(*number) <= most) || numbers.size() == count) return std::nullopt;
     numbers.push_back(*number);
     text.remove_prefix(word.size());
-    text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
+    text.remove_prefix(std::min(text.find_first_not_of(kXmlBlanks), text.size()));
   }
   if (numbers.size() != count) return std::nullopt;
   return numbers;
@@ -109,7 +109,7 @@ Result<std::vector<double>> XmlElement::NumbersOfProperty(const char* name, size
   if (!text) return Fault(fmt::format("has no {}", name));
   auto numbers = NumbersIn(*text, count, most);
   if (!numbers)
-    return Fault(fmt::format("has the {} {}: expected {} within +-{:g}", name, Shown(*text),
+    return Fault(fmt::format("has the {} {}: expected {} within +-{:g}", name, ShownText(*text),
                              count == 1 ? "a number" : fmt::format("{} numbers", count), most));
   return *std::move(numbers);
 }
@@ -118,15 +118,15 @@ Result<int> XmlElement::WholeAttribute(const char* name, int least, int most) co
   const std::optional<std::string_view> text = Attribute(name);
   const std::optional<int> whole = text ? ParseWhole<int>(*text) : std::nullopt;
   if (!whole || *whole < least || *whole > most)
-    return Fault(fmt::format(
-        "has {}: expected a whole number from {} to {}",
-        text ? fmt::format("the {} {}", name, Shown(*text)) : fmt::format("no attribute {}", name),
-        least, most));
+    return Fault(fmt::format("has {}: expected a whole number from {} to {}",
+                             text ? fmt::format("the {} {}", name, ShownText(*text))
+                                  : fmt::format("no attribute {}", name),
+                             least, most));
   return *whole;
 }
 
 Error XmlElement::Wrong(std::string_view expected) const {
-  return Fault(fmt::format("is {}: expected {}", Shown(Text()), expected));
+  return Fault(fmt::format("is {}: expected {}", ShownText(Text()), expected));
 }
 
 Error XmlElement::Fault(std::string_view message) const {
@@ -134,8 +134,8 @@ Error XmlElement::Fault(std::string_view message) const {
 }
 
 Result<XmlFile> XmlFile::Parse(std::string_view text, const std::filesystem::path& file) {
-  if (static_cast<size_t>(std::count(text.begin(), text.end(), '<')) > kMostTags)
-    return InputError(fmt::format("{}: holds more than {} tags", file.string(), kMostTags));
+  if (static_cast<size_t>(std::count(text.begin(), text.end(), '<')) > kMostXmlTags)
+    return InputError(fmt::format("{}: holds more than {} tags", file.string(), kMostXmlTags));
   XmlFile parsed;
   parsed.text_ = std::make_unique<std::string>(text);
   parsed.file_ = std::make_unique<std::filesystem::path>(file);

@@ -22,8 +22,8 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double kMostNumber = 1e9;  // largest coefficient or length in pixels
-constexpr int kMostId = std::numeric_limits<int>::max();
+constexpr double kMostMetashapeNumber = 1e9;  // largest coefficient or length in pixels
+constexpr int kMostMetashapeId = std::numeric_limits<int>::max();
 
 Result<Mat3> RotationOf(const XmlElement& element, const std::vector<double>& rows) {
   Result<Mat3> rotation = RotationOfRows(rows);
@@ -42,29 +42,29 @@ Result<RigidTransform> PoseOf(const XmlElement& transform) {
 }
 
 // The <transform> of a component or chunk: point_world = scale rotation point_chunk + translation.
-struct Placement {
+struct ChunkPlacement {
   double scale = 1;
   RigidTransform rigid = {};
 };
 
-Result<Placement> PlacementOf(const XmlElement& transform) {
-  Placement placement;
+Result<ChunkPlacement> PlacementOf(const XmlElement& transform) {
+  ChunkPlacement placement;
   if (const XmlElement element = transform.Child("rotation"); element.exists()) {
-    LF_ASSIGN_OR_RETURN(const std::vector<double> rows, element.Numbers(9, kMostNumber));
+    LF_ASSIGN_OR_RETURN(const std::vector<double> rows, element.Numbers(9, kMostMetashapeNumber));
     LF_ASSIGN_OR_RETURN(placement.rigid.rotation, RotationOf(element, rows));
   }
   if (const XmlElement element = transform.Child("translation"); element.exists()) {
     LF_ASSIGN_OR_RETURN(const std::vector<double> t, element.Numbers(3, kLargest_w));
     placement.rigid.translation = {t[0], t[1], t[2]};
   }
-  LF_ASSIGN_OR_RETURN(placement.scale, transform.NumberOr("scale", 1, kMostNumber));
-  if (!(placement.scale >= 1 / kMostNumber))
+  LF_ASSIGN_OR_RETURN(placement.scale, transform.NumberOr("scale", 1, kMostMetashapeNumber));
+  if (!(placement.scale >= 1 / kMostMetashapeNumber))
     return transform.Child("scale").Wrong(
-        fmt::format("a number from {:g} to {:g}", 1 / kMostNumber, kMostNumber));
+        fmt::format("a number from {:g} to {:g}", 1 / kMostMetashapeNumber, kMostMetashapeNumber));
   return placement;
 }
 
-RigidTransform CamFromWorld(const RigidTransform& chunk_from_cam, const Placement& placement) {
+RigidTransform CamFromWorld(const RigidTransform& chunk_from_cam, const ChunkPlacement& placement) {
   const RigidTransform world_from_cam = {
       placement.rigid.rotation * chunk_from_cam.rotation,
       placement.scale * (placement.rigid.rotation * chunk_from_cam.translation) +
@@ -82,14 +82,14 @@ Result<XmlElement> CalibrationOf(const XmlElement& sensor) {
       "has no calibration: align the photographs, and export the cameras again as Agisoft XML");
 }
 
-Result<Distortion> DistortionOf(const XmlElement& calibration, std::string_view type) {
+Result<Distortion> MetashapeDistortion(const XmlElement& calibration, std::string_view type) {
   DistortionParameters p = {};
   constexpr const char* kNames[] = {"k1", "k2", "p2", "p1", "k3", "k4"};  // in the order of kBrown
   for (size_t i = 0; i < std::size(kNames); ++i) {
-    LF_ASSIGN_OR_RETURN(p[i], calibration.NumberOr(kNames[i], 0, kMostNumber));
+    LF_ASSIGN_OR_RETURN(p[i], calibration.NumberOr(kNames[i], 0, kMostMetashapeNumber));
   }
   for (const char* const name : {"p3", "p4"}) {
-    LF_ASSIGN_OR_RETURN(const double value, calibration.NumberOr(name, 0, kMostNumber));
+    LF_ASSIGN_OR_RETURN(const double value, calibration.NumberOr(name, 0, kMostMetashapeNumber));
     if (value != 0)
       return calibration.Child(name).Wrong(
           "0, because the formula of this coefficient is not known: optimize the cameras in "
@@ -124,17 +124,17 @@ Result<Intrinsics> IntrinsicsOf(const XmlElement& sensor) {
   LF_ASSIGN_OR_RETURN(k.width_px, resolution.WholeAttribute("width", 1, 1 << 16));
   LF_ASSIGN_OR_RETURN(k.height_px, resolution.WholeAttribute("height", 1, 1 << 16));
   if (!calibration.Child("f").exists()) return calibration.Fault("has no <f>, the focal length");
-  LF_ASSIGN_OR_RETURN(k.fy_px, calibration.Child("f").Number(kMostNumber));
-  LF_ASSIGN_OR_RETURN(const double b1, calibration.NumberOr("b1", 0, kMostNumber));
-  LF_ASSIGN_OR_RETURN(k.skew_px, calibration.NumberOr("b2", 0, kMostNumber));
-  LF_ASSIGN_OR_RETURN(const double cx, calibration.NumberOr("cx", 0, kMostNumber));
-  LF_ASSIGN_OR_RETURN(const double cy, calibration.NumberOr("cy", 0, kMostNumber));
+  LF_ASSIGN_OR_RETURN(k.fy_px, calibration.Child("f").Number(kMostMetashapeNumber));
+  LF_ASSIGN_OR_RETURN(const double b1, calibration.NumberOr("b1", 0, kMostMetashapeNumber));
+  LF_ASSIGN_OR_RETURN(k.skew_px, calibration.NumberOr("b2", 0, kMostMetashapeNumber));
+  LF_ASSIGN_OR_RETURN(const double cx, calibration.NumberOr("cx", 0, kMostMetashapeNumber));
+  LF_ASSIGN_OR_RETURN(const double cy, calibration.NumberOr("cy", 0, kMostMetashapeNumber));
   k.fx_px = k.fy_px + b1;
   k.cx_px = 0.5 * k.width_px + cx;
   k.cy_px = 0.5 * k.height_px + cy;
   std::string_view type = sensor.Attribute("type").value_or("frame");
   if (const auto own = calibration.Attribute("type")) type = *own;
-  LF_ASSIGN_OR_RETURN(k.distortion, DistortionOf(calibration, type));
+  LF_ASSIGN_OR_RETURN(k.distortion, MetashapeDistortion(calibration, type));
   return k;
 }
 
@@ -146,7 +146,7 @@ Result<std::optional<RigidTransform>> OffsetOf(const XmlElement& sensor) {
   if (!location.exists()) location = sensor.Child("translation");
   const XmlElement rotation = sensor.Child("rotation");
   if (!location.exists() || !rotation.exists()) return std::optional<RigidTransform>();
-  LF_ASSIGN_OR_RETURN(const std::vector<double> rows, rotation.Numbers(9, kMostNumber));
+  LF_ASSIGN_OR_RETURN(const std::vector<double> rows, rotation.Numbers(9, kMostMetashapeNumber));
   RigidTransform offset;
   LF_ASSIGN_OR_RETURN(offset.rotation, RotationOf(rotation, rows));
   LF_ASSIGN_OR_RETURN(const std::vector<double> t, location.Numbers(3, kLargest_w));
@@ -155,17 +155,17 @@ Result<std::optional<RigidTransform>> OffsetOf(const XmlElement& sensor) {
 }
 
 // A sensor, whose lens is read only if an image needs it.
-struct Sensor {
+struct RigSensor {
   XmlElement element;
   std::optional<Intrinsics> intrinsics = {};
   std::optional<RigidTransform> master_from_cam = {};
 };
 
 // The parts of a chunk that cameras refer to, by their ids.
-class Chunk {
+class MetashapeChunk {
  public:
-  static Result<Chunk> Of(const XmlElement& chunk) {
-    Chunk read(chunk);
+  static Result<MetashapeChunk> Of(const XmlElement& chunk) {
+    MetashapeChunk read(chunk);
     LF_RETURN_IF_ERROR(read.ReadSensors());
     LF_RETURN_IF_ERROR(read.ReadComponents());
     for (const XmlElement& cameras : chunk.Children("cameras")) read.AddCameras(cameras);
@@ -175,7 +175,7 @@ class Chunk {
   const std::vector<XmlElement>& cameras() const { return cameras_; }
 
   Result<Intrinsics> IntrinsicsOfCamera(const XmlElement& camera) {
-    LF_ASSIGN_OR_RETURN(Sensor* const sensor, SensorOf(camera));
+    LF_ASSIGN_OR_RETURN(RigSensor* const sensor, SensorOf(camera));
     if (!sensor->intrinsics) {
       LF_ASSIGN_OR_RETURN(sensor->intrinsics, IntrinsicsOf(sensor->element));
     }
@@ -189,15 +189,16 @@ class Chunk {
       return std::optional(pose);
     }
     if (!camera.Attribute("master_id")) return std::optional<RigidTransform>();
-    LF_ASSIGN_OR_RETURN(const int master_id, camera.WholeAttribute("master_id", 0, kMostId));
+    LF_ASSIGN_OR_RETURN(const int master_id,
+                        camera.WholeAttribute("master_id", 0, kMostMetashapeId));
     const auto master = by_id_.find(master_id);
     if (master == by_id_.end())
       return camera.Fault(fmt::format("has the master {}, which is not in the file", master_id));
     const XmlElement transform = cameras_[master->second].Child("transform");
     if (!transform.exists()) return std::optional<RigidTransform>();
     LF_ASSIGN_OR_RETURN(const RigidTransform pose, PoseOf(transform));
-    LF_ASSIGN_OR_RETURN(Sensor* const of_master, SensorOf(cameras_[master->second]));
-    LF_ASSIGN_OR_RETURN(Sensor* const of_camera, SensorOf(camera));
+    LF_ASSIGN_OR_RETURN(RigSensor* const of_master, SensorOf(cameras_[master->second]));
+    LF_ASSIGN_OR_RETURN(RigSensor* const of_camera, SensorOf(camera));
     if (!of_master->master_from_cam || !of_camera->master_from_cam)
       return std::optional<RigidTransform>();
     // The master of the cameras need not be that of the sensors.
@@ -208,14 +209,14 @@ class Chunk {
   // A part of the chunk whose cameras stand relative to each other.
   struct Part {
     int component = 0;  // kPlaced: all components that are placed in the chunk's coordinate system
-    std::optional<Placement> placement = {};
+    std::optional<ChunkPlacement> placement = {};
   };
   static constexpr int kPlaced = -1;
 
   Result<Part> PartOf(const XmlElement& camera) const {
     int id = 0;
     if (camera.Attribute("component_id")) {
-      LF_ASSIGN_OR_RETURN(id, camera.WholeAttribute("component_id", 0, kMostId));
+      LF_ASSIGN_OR_RETURN(id, camera.WholeAttribute("component_id", 0, kMostMetashapeId));
     }
     const auto component = components_.find(id);
     if (component != components_.end() && component->second)
@@ -226,12 +227,12 @@ class Chunk {
   }
 
  private:
-  explicit Chunk(const XmlElement& element) : element_(element) {}
+  explicit MetashapeChunk(const XmlElement& element) : element_(element) {}
 
   Result<void> ReadSensors() {
     for (const XmlElement& element : element_.Child("sensors").Children("sensor")) {
-      LF_ASSIGN_OR_RETURN(const int id, element.WholeAttribute("id", 0, kMostId));
-      Sensor sensor{element};
+      LF_ASSIGN_OR_RETURN(const int id, element.WholeAttribute("id", 0, kMostMetashapeId));
+      RigSensor sensor{element};
       LF_ASSIGN_OR_RETURN(sensor.master_from_cam, OffsetOf(element));
       sensors_.emplace(id, std::move(sensor));
     }
@@ -244,11 +245,12 @@ class Chunk {
     }
     const XmlElement components = element_.Child("components");
     if (components.Attribute("active_id")) {
-      LF_ASSIGN_OR_RETURN(active_component_, components.WholeAttribute("active_id", 0, kMostId));
+      LF_ASSIGN_OR_RETURN(active_component_,
+                          components.WholeAttribute("active_id", 0, kMostMetashapeId));
     }
     for (const XmlElement& component : components.Children("component")) {
-      LF_ASSIGN_OR_RETURN(const int id, component.WholeAttribute("id", 0, kMostId));
-      std::optional<Placement> placement;
+      LF_ASSIGN_OR_RETURN(const int id, component.WholeAttribute("id", 0, kMostMetashapeId));
+      std::optional<ChunkPlacement> placement;
       if (const XmlElement transform = component.Child("transform"); transform.exists()) {
         LF_ASSIGN_OR_RETURN(placement, PlacementOf(transform));
       }
@@ -260,7 +262,7 @@ class Chunk {
   // Adds the cameras in an element and in the groups in it. Groups are not nested.
   void AddCameras(const XmlElement& element) {
     for (const XmlElement& camera : element.Children("camera")) {
-      if (const auto id = camera.WholeAttribute("id", 0, kMostId))
+      if (const auto id = camera.WholeAttribute("id", 0, kMostMetashapeId))
         by_id_.emplace(*id, cameras_.size());
       cameras_.push_back(camera);
     }
@@ -268,8 +270,8 @@ class Chunk {
     for (const XmlElement& group : element.Children("group")) AddCameras(group);
   }
 
-  Result<Sensor*> SensorOf(const XmlElement& camera) {
-    LF_ASSIGN_OR_RETURN(const int id, camera.WholeAttribute("sensor_id", 0, kMostId));
+  Result<RigSensor*> SensorOf(const XmlElement& camera) {
+    LF_ASSIGN_OR_RETURN(const int id, camera.WholeAttribute("sensor_id", 0, kMostMetashapeId));
     const auto found = sensors_.find(id);
     if (found == sensors_.end())
       return camera.Fault(fmt::format("has the sensor {}, which is not in the file", id));
@@ -277,16 +279,16 @@ class Chunk {
   }
 
   XmlElement element_;
-  std::map<int, Sensor> sensors_;
-  std::map<int, std::optional<Placement>> components_;
-  std::optional<Placement> of_chunk_;
+  std::map<int, RigSensor> sensors_;
+  std::map<int, std::optional<ChunkPlacement>> components_;
+  std::optional<ChunkPlacement> of_chunk_;
   int active_component_ = 0;
   std::vector<XmlElement> cameras_;
   std::map<int, size_t> by_id_;  // indices into cameras_
 };
 
 // Cameras that are left out, as a warning counts them.
-struct LeftOut {
+struct LeftOutCameras {
   size_t disabled = 0, not_aligned = 0, elsewhere = 0;
 
   void Warn(const fs::path& file, size_t total) const {
@@ -338,15 +340,15 @@ Result<XmlElement> ChunkIn(const XmlElement& root) {
 Result<ExportedCameras> ParseMetashape(std::string_view text, const fs::path& file) {
   LF_ASSIGN_OR_RETURN(const XmlFile xml, XmlFile::Parse(text, file));
   LF_ASSIGN_OR_RETURN(const XmlElement element, ChunkIn(xml.Root()));
-  LF_ASSIGN_OR_RETURN(Chunk chunk, Chunk::Of(element));
+  LF_ASSIGN_OR_RETURN(MetashapeChunk chunk, MetashapeChunk::Of(element));
   struct Posed {
     XmlElement camera;
     RigidTransform chunk_from_cam;
-    Chunk::Part part;
+    MetashapeChunk::Part part;
   };
   std::vector<Posed> posed;
   std::map<int, size_t> counts;  // cameras of each part, by Part::component
-  LeftOut left_out;
+  LeftOutCameras left_out;
   for (const XmlElement& camera : chunk.cameras()) {
     if (IsDisabled(camera)) {
       ++left_out.disabled;
@@ -357,7 +359,7 @@ Result<ExportedCameras> ParseMetashape(std::string_view text, const fs::path& fi
       ++left_out.not_aligned;
       continue;
     }
-    LF_ASSIGN_OR_RETURN(const Chunk::Part part, chunk.PartOf(camera));
+    LF_ASSIGN_OR_RETURN(const MetashapeChunk::Part part, chunk.PartOf(camera));
     ++counts[part.component];
     posed.push_back({camera, *pose, part});
   }
@@ -375,11 +377,11 @@ Result<ExportedCameras> ParseMetashape(std::string_view text, const fs::path& fi
     image.name = one.camera.Attribute("label").value_or("");
     LF_ASSIGN_OR_RETURN(image.intrinsics, chunk.IntrinsicsOfCamera(one.camera));
     image.cam_from_world =
-        CamFromWorld(one.chunk_from_cam, one.part.placement.value_or(Placement()));
+        CamFromWorld(one.chunk_from_cam, one.part.placement.value_or(ChunkPlacement()));
     cameras.images.push_back(std::move(image));
   }
   left_out.Warn(file, chunk.cameras().size());
-  if (!cameras.images.empty()) TellUnit(file, element, most->first == Chunk::kPlaced);
+  if (!cameras.images.empty()) TellUnit(file, element, most->first == MetashapeChunk::kPlaced);
   return cameras;
 }
 
