@@ -9,7 +9,9 @@
 #include <unordered_set>
 #include <utility>
 
+#include "lf/core/file.h"
 #include "lf/core/files_nearby.h"
+#include "lf/core/log.h"
 #include "lf/import/exports/import_limits.h"
 #include "lf/light_field/model/distinct_intrinsics.h"
 #include "lf/light_field/model/find_images.h"
@@ -164,6 +166,7 @@ Result<void> FindSizes(const ExportOptions& options, const fs::path& file,
 Result<LightField> FinishExport(ExportedCameras cameras, const fs::path& file,
                                 const ExportOptions& options) {
   LF_RETURN_IF_ERROR(CheckImages(cameras, file));
+  if (cameras.folder.empty()) cameras.folder = ".";
   if (std::any_of(cameras.images.begin(), cameras.images.end(),
                   [](const ExportedImage& image) { return !HasSize(image.intrinsics); }))
     LF_RETURN_IF_ERROR(FindSizes(options, file, &cameras));
@@ -182,6 +185,43 @@ Result<LightField> FinishExport(ExportedCameras cameras, const fs::path& file,
   light_field.intrinsics = distinct.Take();
   light_field.encoding.max_radiance = DefaultMaxRadiance(light_field.image_names);
   return light_field;
+}
+
+Result<LightField> ReadExport(const fs::path& file, const ExportOptions& options,
+                              ParseExport parse) {
+  LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(file, kMostExportBytes));
+  LF_ASSIGN_OR_RETURN(ExportedCameras cameras, parse(text, file));
+  return FinishExport(std::move(cameras), file, options);
+}
+
+fs::path FolderWithImages(const std::vector<ExportedImage>& images,
+                          const std::vector<fs::path>& folders, const fs::path& otherwise) {
+  LightField names;
+  names.cameras.resize(images.size());
+  for (const ExportedImage& image : images) names.image_names.push_back(image.name);
+  for (const fs::path& folder : folders) {
+    names.folder = folder.lexically_normal();
+    if (HasSomeImageFiles(names)) return names.folder;
+  }
+  return otherwise;
+}
+
+fs::path FolderAbove(const fs::path& path) {
+  const fs::path above = path.parent_path();
+  return above.empty() ? fs::path(".") : above;
+}
+
+void LogPosedCount(const fs::path& file, size_t posed_count, size_t image_count) {
+  if (posed_count == image_count) return;
+  LogInfo("{}: {} of {} images have a pose; the others are left out", file.string(), posed_count,
+          image_count);
+}
+
+Distortion DistortionOf(DistortionModel model, const DistortionParameters& parameters) {
+  const bool is_zero = std::all_of(parameters.begin(), parameters.end(),
+                                   [](double parameter) { return parameter == 0; });
+  if (model == DistortionModel::kRadialTangential && is_zero) return {};
+  return {model, parameters};
 }
 
 Result<Mat3> RotationOfQuaternion(double w, double x, double y, double z) {

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lf/core/result.h"
@@ -33,7 +34,7 @@ enum class SizesFrom {
 // The cameras of an export, before image files are looked at.
 struct ExportedCameras {
   std::vector<ExportedImage> images;
-  std::filesystem::path folder;  // where the names of the images lead from
+  std::filesystem::path folder;  // where the names of the images lead from; empty: "."
   std::optional<DepthRange> depth_range;
   double unit_m = 1;  // metres per world unit
   // The next two describe images whose size is not stated.
@@ -41,7 +42,7 @@ struct ExportedCameras {
   bool counts_from_middle = false;  // their cx_px and cy_px are offsets from the image's middle
 };
 
-// What a reader is told besides the file.
+// The options of a reader.
 struct ExportOptions {
   // Folder in which image files are searched by name (FindImageFiles()).
   std::optional<std::filesystem::path> images_folder = {};
@@ -60,6 +61,36 @@ struct ExportOptions {
 // camera beyond kLargest_w; a size that is not stated if no image file is found.
 Result<LightField> FinishExport(ExportedCameras cameras, const std::filesystem::path& file,
                                 const ExportOptions& options);
+
+// Parses the text of an export, without looking at image files.
+//   file  for messages; its folder, or one near it, becomes ExportedCameras::folder
+using ParseExport = Result<ExportedCameras> (*)(std::string_view text,
+                                                const std::filesystem::path& file);
+
+// Reads a file of at most kMostExportBytes, and finishes what `parse` returns.
+inline constexpr size_t kMostExportBytes = size_t{2} << 30;
+Result<LightField> ReadExport(const std::filesystem::path& file, const ExportOptions& options,
+                              ParseExport parse);
+
+// Returns the first of the folders in which one of up to 64 of the images lies under its name;
+// `otherwise` if none does.
+std::filesystem::path FolderWithImages(const std::vector<ExportedImage>& images,
+                                       const std::vector<std::filesystem::path>& folders,
+                                       const std::filesystem::path& otherwise);
+// Returns the folder in which a file or folder lies: "." for a name without a folder.
+std::filesystem::path FolderAbove(const std::filesystem::path& path);
+
+// Logs how many of the images of an export have a pose, unless all have one.
+void LogPosedCount(const std::filesystem::path& file, size_t posed_count, size_t image_count);
+
+// Returns a distortion with the parameters in the order of the model. The model kRadialTangential
+// without distortion becomes kNone.
+Distortion DistortionOf(DistortionModel model, const DistortionParameters& parameters);
+
+// Returns the pose of a camera at `centre`: x_cam = rotation (x_world - centre).
+inline RigidTransform PoseAt(const Mat3& cam_from_world_rotation, const Vec3& centre) {
+  return {cam_from_world_rotation, -(cam_from_world_rotation * centre)};
+}
 
 // The following functions make rotations of what exports state. Their messages of kInput do not
 // name the place in the file; the caller adds it. All of them end in NearestRotation().

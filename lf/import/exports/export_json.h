@@ -27,9 +27,6 @@ namespace lf {
 Result<nlohmann::json> ParseExportJson(std::string_view text, const std::filesystem::path& file,
                                        std::initializer_list<std::string_view> left_out = {});
 
-// Largest size of a JSON file of an export, for ReadFile().
-inline constexpr size_t kMostExportBytes = size_t{2} << 30;
-
 // A value in a file. The file's json and its path must outlive the value.
 class JsonValue {
  public:

@@ -54,8 +54,8 @@ void AddFormsThatAreNotRead(std::vector<ExportForm>* forms) {
       .name = "a database of COLMAP, which holds features but no poses",
       .places = {"database.db"},
       .words = {"SQLite format 3", "two_view_geometries"},
-      .advice = "let COLMAP reconstruct the poses from it: mkdir sparse && colmap mapper "
-                "--database_path database.db --image_path images --output_path sparse",
+      .advice = "let COLMAP reconstruct the poses from it (colmap mapper), and give the folder of "
+                "sparse/0 and images",
   });
   forms->push_back({
       .name = "a scene of Blender, which is read only by Blender itself",
