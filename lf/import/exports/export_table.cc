@@ -1,13 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rows of ExportForms(), apart from the functions that look for them.
 #include "lf/import/exports/export_forms.h"
+#include "lf/import/exports/read_opensfm.h"
 
 namespace lf {
 namespace {
 
 // Adds the rows of forms that are read. A form whose files may lie beside those of another one,
 // from which they were made, comes after it.
-void AddFormsThatAreRead(std::vector<ExportForm>* forms) { (void)forms; }
+void AddFormsThatAreRead(std::vector<ExportForm>* forms) {
+  forms->push_back({
+      .name = "a reconstruction of OpenSfM or OpenDroneMap",
+      .listed = "reconstruction.json (OpenSfM, OpenDroneMap)",
+      .places = {"reconstruction.json", "opensfm/reconstruction.json"},
+      .names = {"*.json"},
+      .words = {"\"cameras\"", "\"shots\""},
+      .read = ReadOpenSfm,
+  });
+}
 
 // Adds the rows of forms that are not read. Each advice ends a message, and leads to a form that is
 // read.
