@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rows of ExportForms(), apart from the functions that look for them.
 #include "lf/import/exports/export_forms.h"
+#include "lf/import/exports/read_meshroom.h"
 #include "lf/import/exports/read_opensfm.h"
 
 namespace lf {
@@ -16,6 +17,16 @@ void AddFormsThatAreRead(std::vector<ExportForm>* forms) {
       .names = {"*.json"},
       .words = {"\"cameras\"", "\"shots\""},
       .read = ReadOpenSfm,
+  });
+  forms->push_back({
+      .name = "a scene of Meshroom (AliceVision)",
+      .listed = "cameras.sfm or sfm.json (Meshroom)",
+      .places = {"cameras.sfm", "sfm.json", "sfm.sfm", "*.sfm",
+                 "MeshroomCache/StructureFromMotion/*/cameras.sfm",
+                 "StructureFromMotion/*/cameras.sfm"},
+      .names = {"*.json"},
+      .words = {"\"version\"", "\"views\"", "\"viewId\""},
+      .read = ReadMeshroom,
   });
 }
 
