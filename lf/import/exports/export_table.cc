@@ -2,6 +2,7 @@
 // The rows of ExportForms(), apart from the functions that look for them.
 #include "lf/import/exports/export_forms.h"
 #include "lf/import/exports/read_meshroom.h"
+#include "lf/import/exports/read_openmvg.h"
 #include "lf/import/exports/read_opensfm.h"
 
 namespace lf {
@@ -27,6 +28,15 @@ void AddFormsThatAreRead(std::vector<ExportForm>* forms) {
       .names = {"*.json"},
       .words = {"\"version\"", "\"views\"", "\"viewId\""},
       .read = ReadMeshroom,
+  });
+  forms->push_back({
+      .name = "a scene of OpenMVG",
+      .listed = "sfm_data.json (OpenMVG)",
+      .places = {"sfm_data.json", "sfm_data_expanded.json", "reconstruction/sfm_data.json",
+                 "*/sfm_data.json"},
+      .names = {"*.json"},
+      .words = {"\"sfm_data_version\"", "\"ptr_wrapper\""},
+      .read = ReadOpenMvg,
   });
 }
 
