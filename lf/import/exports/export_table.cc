@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rows of ExportForms(), apart from the functions that look for them.
 #include "lf/import/exports/export_forms.h"
+#include "lf/import/exports/read_bundler.h"
 #include "lf/import/exports/read_meshroom.h"
 #include "lf/import/exports/read_openmvg.h"
 #include "lf/import/exports/read_opensfm.h"
@@ -37,6 +38,13 @@ void AddFormsThatAreRead(std::vector<ExportForm>* forms) {
       .names = {"*.json"},
       .words = {"\"sfm_data_version\"", "\"ptr_wrapper\""},
       .read = ReadOpenMvg,
+  });
+  forms->push_back({
+      .name = "a bundle file (Bundler)",
+      .listed = "bundle.out with list.txt (Bundler)",
+      .places = {"bundle.out", "bundle/bundle.out", "*.out"},
+      .words = {"# Bundle file v0.3"},
+      .read = ReadBundler,
   });
 }
 
