@@ -3,6 +3,7 @@
 #include "lf/import/exports/export_forms.h"
 #include "lf/import/exports/read_bundler.h"
 #include "lf/import/exports/read_meshroom.h"
+#include "lf/import/exports/read_nvm.h"
 #include "lf/import/exports/read_openmvg.h"
 #include "lf/import/exports/read_opensfm.h"
 
@@ -45,6 +46,13 @@ void AddFormsThatAreRead(std::vector<ExportForm>* forms) {
       .places = {"bundle.out", "bundle/bundle.out", "*.out"},
       .words = {"# Bundle file v0.3"},
       .read = ReadBundler,
+  });
+  forms->push_back({
+      .name = "a model of VisualSFM",
+      .listed = "NAME.nvm (VisualSFM)",
+      .places = {"*.nvm"},
+      .words = {"NVM_V3"},
+      .read = ReadNvm,
   });
 }
 
