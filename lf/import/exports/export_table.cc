@@ -6,6 +6,7 @@
 #include "lf/import/exports/read_nvm.h"
 #include "lf/import/exports/read_openmvg.h"
 #include "lf/import/exports/read_opensfm.h"
+#include "lf/import/exports/read_splat_cameras.h"
 
 namespace lf {
 namespace {
@@ -53,6 +54,14 @@ void AddFormsThatAreRead(std::vector<ExportForm>* forms) {
       .places = {"*.nvm"},
       .words = {"NVM_V3"},
       .read = ReadNvm,
+  });
+  forms->push_back({
+      .name = "the cameras of a 3D Gaussian splatting program",
+      .listed = "cameras.json (3D Gaussian splatting)",
+      .places = {"cameras.json"},
+      .names = {"*.json"},
+      .words = {"\"img_name\"", "\"rotation\"", "\"position\"", "\"fx\""},
+      .read = ReadSplatLightField,
   });
 }
 
