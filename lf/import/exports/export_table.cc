@@ -3,6 +3,7 @@
 #include "lf/import/exports/export_forms.h"
 #include "lf/import/exports/read_bundler.h"
 #include "lf/import/exports/read_meshroom.h"
+#include "lf/import/exports/read_mvsnet.h"
 #include "lf/import/exports/read_nvm.h"
 #include "lf/import/exports/read_openmvg.h"
 #include "lf/import/exports/read_opensfm.h"
@@ -62,6 +63,14 @@ void AddFormsThatAreRead(std::vector<ExportForm>* forms) {
       .names = {"*.json"},
       .words = {"\"img_name\"", "\"rotation\"", "\"position\"", "\"fx\""},
       .read = ReadSplatLightField,
+  });
+  forms->push_back({
+      .name = "a data set of MVSNet",
+      .listed = "cams/*_cam.txt (MVSNet)",
+      .places = {"cams/*_cam.txt", "*_cam.txt"},
+      .words = {"extrinsic", "intrinsic"},
+      .has_parts = true,
+      .read = ReadMvsnet,
   });
 }
 
