@@ -4,6 +4,7 @@
 #include "lf/import/exports/read_bundler.h"
 #include "lf/import/exports/read_meshroom.h"
 #include "lf/import/exports/read_mvsnet.h"
+#include "lf/import/exports/read_nerfies.h"
 #include "lf/import/exports/read_nvm.h"
 #include "lf/import/exports/read_openmvg.h"
 #include "lf/import/exports/read_opensfm.h"
@@ -71,6 +72,14 @@ void AddFormsThatAreRead(std::vector<ExportForm>* forms) {
       .words = {"extrinsic", "intrinsic"},
       .has_parts = true,
       .read = ReadMvsnet,
+  });
+  forms->push_back({
+      .name = "a data set of nerfies",
+      .listed = "camera/*.json (nerfies)",
+      .places = {"camera/*.json"},
+      .words = {"\"orientation\"", "\"position\"", "\"principal_point\"", "\"image_size\""},
+      .has_parts = true,
+      .read = ReadNerfies,
   });
 }
 
