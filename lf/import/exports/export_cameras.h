@@ -43,7 +43,7 @@ struct ExportedCameras {
   bool in_larger_sides = false;     // their lengths are shares of the image's larger side
 };
 
-// What a reader is told besides the file.
+// The options of a reader.
 struct ExportOptions {
   // Folder in which image files are searched by name (FindImageFiles()).
   std::optional<std::filesystem::path> images_folder = {};

@@ -18,6 +18,7 @@ namespace {
 
 constexpr size_t kLookedAtBytes = size_t{1} << 20;
 constexpr size_t kMostEntries = size_t{1} << 20;
+constexpr size_t kMostPartsLookedAt = 16;
 
 bool Fits(std::string_view pattern, const std::string& name) {
   return fnmatch(std::string(pattern).c_str(), name.c_str(), FNM_PERIOD | FNM_CASEFOLD) == 0;
@@ -98,8 +99,11 @@ class FilesByPattern {
 std::vector<fs::path> FilesOf(const ExportForm& form, FilesByPattern* files) {
   for (const std::string_view pattern : form.places) {
     std::vector<fs::path> found = files->Find(pattern);
-    if (form.has_parts && found.size() > 1) found.resize(1);
+    // Only the first of many parts are read, because a data set may have one for each of its
+    // images.
+    if (form.has_parts && found.size() > kMostPartsLookedAt) found.resize(kMostPartsLookedAt);
     std::erase_if(found, [&](const fs::path& file) { return !HoldsWords(form, file); });
+    if (form.has_parts && found.size() > 1) found.resize(1);
     if (!found.empty()) return found;
   }
   return {};

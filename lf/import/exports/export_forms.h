@@ -36,7 +36,7 @@ struct ExportForm {
   // Reads the light field to which a file belongs. nullptr: the form is not read.
   Result<LightField> (*read)(const std::filesystem::path& file,
                              const ExportOptions& options) = nullptr;
-  // What makes a form that is read, as the end of a message: "export ... by the menu ...". Empty
+  // The way to a form that is read, as the end of a message: "export ... by the menu ...". Empty
   // for forms that are read.
   std::string_view advice = {};
 };

@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rows of ExportForms(), apart from the functions that look for them.
 #include "lf/import/exports/export_forms.h"
+#include "lf/import/exports/read_bundler.h"
+#include "lf/import/exports/read_meshroom.h"
 #include "lf/import/exports/read_metashape.h"
+#include "lf/import/exports/read_mvsnet.h"
+#include "lf/import/exports/read_nerfies.h"
+#include "lf/import/exports/read_nvm.h"
+#include "lf/import/exports/read_openmvg.h"
+#include "lf/import/exports/read_opensfm.h"
 #include "lf/import/exports/read_reality_csv.h"
 #include "lf/import/exports/read_reality_xmp.h"
+#include "lf/import/exports/read_splat_cameras.h"
 
 namespace lf {
 namespace {
@@ -11,6 +19,71 @@ namespace {
 // Adds the rows of forms that are read. A form whose files may lie beside those of another one,
 // from which they were made, comes after it.
 void AddFormsThatAreRead(std::vector<ExportForm>* forms) {
+  forms->push_back({
+      .name = "a reconstruction of OpenSfM or OpenDroneMap",
+      .listed = "reconstruction.json (OpenSfM, OpenDroneMap)",
+      .places = {"reconstruction.json", "opensfm/reconstruction.json"},
+      .names = {"*.json"},
+      .words = {"\"cameras\"", "\"shots\""},
+      .read = ReadOpenSfm,
+  });
+  forms->push_back({
+      .name = "a scene of Meshroom (AliceVision)",
+      .listed = "cameras.sfm or sfm.json (Meshroom)",
+      .places = {"cameras.sfm", "sfm.json", "sfm.sfm", "*.sfm",
+                 "MeshroomCache/StructureFromMotion/*/cameras.sfm",
+                 "StructureFromMotion/*/cameras.sfm"},
+      .names = {"*.json"},
+      .words = {"\"version\"", "\"views\"", "\"viewId\""},
+      .read = ReadMeshroom,
+  });
+  forms->push_back({
+      .name = "a scene of OpenMVG",
+      .listed = "sfm_data.json (OpenMVG)",
+      .places = {"sfm_data.json", "sfm_data_expanded.json", "reconstruction/sfm_data.json",
+                 "*/sfm_data.json"},
+      .names = {"*.json"},
+      .words = {"\"sfm_data_version\"", "\"ptr_wrapper\""},
+      .read = ReadOpenMvg,
+  });
+  forms->push_back({
+      .name = "a bundle file (Bundler)",
+      .listed = "bundle.out with list.txt (Bundler)",
+      .places = {"bundle.out", "bundle/bundle.out", "*.out"},
+      .words = {"# Bundle file v0.3"},
+      .read = ReadBundler,
+  });
+  forms->push_back({
+      .name = "a model of VisualSFM",
+      .listed = "NAME.nvm (VisualSFM)",
+      .places = {"*.nvm"},
+      .words = {"NVM_V3"},
+      .read = ReadNvm,
+  });
+  forms->push_back({
+      .name = "the cameras of a 3D Gaussian splatting program",
+      .listed = "cameras.json (3D Gaussian splatting)",
+      .places = {"cameras.json"},
+      .names = {"*.json"},
+      .words = {"\"img_name\"", "\"rotation\"", "\"position\"", "\"fx\""},
+      .read = ReadSplatLightField,
+  });
+  forms->push_back({
+      .name = "a data set of MVSNet",
+      .listed = "cams/*_cam.txt (MVSNet)",
+      .places = {"cams/*_cam.txt", "*_cam.txt"},
+      .words = {"extrinsic", "intrinsic"},
+      .has_parts = true,
+      .read = ReadMvsnet,
+  });
+  forms->push_back({
+      .name = "a data set of nerfies",
+      .listed = "camera/*.json (nerfies)",
+      .places = {"camera/*.json"},
+      .words = {"\"orientation\"", "\"position\"", "\"principal_point\"", "\"image_size\""},
+      .has_parts = true,
+      .read = ReadNerfies,
+  });
   forms->push_back({
       .name = "the cameras of a chunk of Metashape",
       .listed = "cameras.xml (Metashape)",
@@ -87,8 +160,8 @@ void AddFormsThatAreNotRead(std::vector<ExportForm>* forms) {
       .name = "a database of COLMAP, which holds features but no poses",
       .places = {"database.db"},
       .words = {"SQLite format 3", "two_view_geometries"},
-      .advice = "let COLMAP reconstruct the poses from it: mkdir sparse && colmap mapper "
-                "--database_path database.db --image_path images --output_path sparse",
+      .advice = "let COLMAP reconstruct the poses from it (colmap mapper), and give the folder of "
+                "sparse/0 and images",
   });
   forms->push_back({
       .name = "a scene of Blender, which is read only by Blender itself",

@@ -7,8 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "lf/import/exports/test_export_checks.h"
-
 namespace lf {
 namespace {
 

@@ -5,12 +5,13 @@
 #include <cstdint>
 #include <string_view>
 
+#include "lf/core/log.h"
+#include "lf/import/exports/fuzz_exports.h"
 #include "lf/import/exports/read_reality_csv.h"
-#include "lf/import/exports/test_export_checks.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size_bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes), size_bytes);
   lf::SetLogLevel(lf::LogLevel::kError);
-  lf::CheckExport(lf::ParseRealityCsv(text, "f/cameras.csv"), "f/cameras.csv");
+  lf::CheckExport(lf::ParseRealityCsv(text, "f/cameras.csv"));
   return 0;
 }

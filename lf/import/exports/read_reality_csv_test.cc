@@ -3,12 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "lf/import/exports/reality_lens.h"
-#include "lf/import/exports/test_export_checks.h"
 
 namespace lf {
 namespace {
@@ -20,7 +21,7 @@ LightField OpenedCsv(const std::string& text) {
   EXPECT_TRUE(cameras) << cameras.error().message << "\n" << text;
   if (!cameras) return {};
   ExportOptions options;
-  options.image_size = AnySize;
+  options.image_size = [](const std::filesystem::path&) { return Result(std::array{640, 480}); };
   Result<LightField> light_field = FinishExport(*std::move(cameras), "f/cameras.csv", options);
   EXPECT_TRUE(light_field) << light_field.error().message;
   return light_field ? *std::move(light_field) : LightField();

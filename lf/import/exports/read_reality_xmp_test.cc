@@ -3,11 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "lf/core/file.h"
-#include "lf/import/exports/test_export_checks.h"
 #include "lf/pixels/files/test_folder.h"
 
 namespace lf {
@@ -115,7 +116,7 @@ class RealityXmpFolder : public FolderTest {
   }
   LightField Read() const {
     ExportOptions options;
-    options.image_size = AnySize;
+    options.image_size = [](const std::filesystem::path&) { return Result(std::array{640, 480}); };
     Result<LightField> light_field = ReadRealityXmp(folder_ / "a.xmp", options);
     EXPECT_TRUE(light_field) << light_field.error().message;
     return light_field ? *std::move(light_field) : LightField();
