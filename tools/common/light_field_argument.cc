@@ -46,8 +46,10 @@ void LightFieldArgument::AddTo(CLI::App& app) {
   input
       .Add("LIGHTFIELD", path,
            "Calibration file, its folder, or a packed store\n"
-           "The calibration is a transforms.json, or a calibration of COLMAP, Middlebury, LLFF, "
-           "HCI or AOS. A packed store is one file, STORE.lfs. A folder of images with Stanford "
+           "The calibration is a transforms.json, a calibration of COLMAP, Middlebury, LLFF, "
+           "HCI or AOS, or an export of another program, such as OpenSfM or Meshroom "
+           "(doc/inputs.md). A packed store is one file, STORE.lfs. A folder of images with "
+           "Stanford "
            "names is also a light field: the names contain the calibration.")
       ->required()
       ->check(NotEmpty());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the fuzz targets of the readers of exports check.
+// Checks that the fuzz targets of the readers of exports share.
 #pragma once
 
 #include <array>

@@ -169,7 +169,7 @@ Result<RigidTransform> MeshroomPose(const JsonValue& pose) {
   return PoseAt(transposed->transpose(), Vec3(centre.data()));
 }
 
-// What the views of a scene refer to by numbers, which are labels.
+// The entries to which the views of a scene refer by numbers, which are labels.
 struct MeshroomScene {
   MeshroomVersion version;
   std::map<std::string, JsonValue> intrinsics, poses, rigs;

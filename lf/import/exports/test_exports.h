@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the tests of several readers of exports need.
+// Functions that the tests of several readers of exports share.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -127,6 +127,15 @@ std::optional<Result<LightField>> OpenExport(const fs::path& path, const OpenOpt
   return OpenExportFile(path, {.images_folder = options.images_folder});
 }
 
+// Opens the first export in a folder, which must hold one.
+Result<LightField> OpenFirstExport(const fs::path& folder, const OpenOptions& options) {
+  LF_RETURN_IF_ERROR(CheckExportOptions(folder, options));
+  std::optional<Result<LightField>> opened =
+      OpenExportIn(folder, {.images_folder = options.images_folder});
+  LF_CHECK(opened.has_value());
+  return *std::move(opened);
+}
+
 // Opens a calibration file or packed store. Returns nullopt if its name is of no known kind.
 std::optional<Result<LightField>> OpenFile(const fs::path& path, const OpenOptions& options) {
   const bool is_json = path.extension() == ".json";
@@ -411,8 +420,13 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
   std::string series;
   for (const fs::path& folder : {path, path / kImagesName}) {
     const StanfordNames names = FindStanfordNames(folder);
-    if (names == StanfordNames::kGrid || (names == StanfordNames::kSeries && options.pitch_w))
-      return OpenStanford(folder, options, path);
+    if (names == StanfordNames::kGrid || (names == StanfordNames::kSeries && options.pitch_w)) {
+      Result<LightField> opened = OpenStanford(folder, options, path);
+      if (opened || !StanfordOptionOf(options).empty() || ExportsIn(path, /*reads=*/true).empty())
+        return opened;
+      LogInfo("{}: the names of the images do not state the whole calibration", folder.string());
+      return OpenFirstExport(path, options);
+    }
     if (names == StanfordNames::kSeries)
       series = fmt::format(
           "; the names in {} end in two numbers, but not in those of a grid of cameras: if they "
@@ -425,10 +439,7 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
     return InputError(fmt::format(
         "{}: holds several packed stores, such as {} and {}: give the path of one of them",
         path.string(), stores[0].filename().string(), stores[1].filename().string()));
-  if (!ExportsIn(path, /*reads=*/true).empty()) {
-    LF_RETURN_IF_ERROR(CheckExportOptions(path, options));
-    return *OpenExportIn(path, {.images_folder = options.images_folder});
-  }
+  if (!ExportsIn(path, /*reads=*/true).empty()) return OpenFirstExport(path, options);
   std::string hint = LightFieldsBelow(path);
   if (hint.empty()) hint = AdviceOnExportsIn(path);
   if (hint.empty()) hint = PhotographsIn(path) + series;

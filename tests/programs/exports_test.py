@@ -1,0 +1,162 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""Opens the exports of other programs, and compares the LF cameras with the formulas of these programs.
+
+usage: exports_test.py EXTENSION    EXTENSION: the compiled module of the Python package
+"""
+import pathlib
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+import write_exports
+from write_exports import random_views
+
+lf = None
+MOST_PX = 1e-6  # by which a projected point may be off
+
+
+class ExportsTest(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.root = pathlib.Path(temporary.name)
+        self.count = 0
+
+    def folder(self):
+        self.count += 1
+        folder = self.root / str(self.count)
+        folder.mkdir()
+        return folder
+
+    def check(self, write, views=None, opened=".", most_px=MOST_PX, reach=0.42, **options):
+        """Writes an export, opens it, and compares positions of points in both directions. Returns the light field."""
+        views = views or random_views()
+        folder = self.folder()
+        project = write(folder, views, **options)
+        field = lf.open(folder / opened)
+        self.assertEqual(len(field), len(views))
+        for i, view in enumerate(views):
+            name = pathlib.PurePath(field.names[i])
+            self.assertEqual(name.stem, view.name)
+            points = write_exports.points_before(view, reach=reach)
+            expected = project(i, points)
+            self.assertLessEqual(np.abs(field.project(i, points) - expected).max(), most_px, options)
+            origins, directions = field.rays(i, expected)
+            self.assertLessEqual(np.abs(origins - view.centre).max(), 1e-9)
+            towards = points - view.centre
+            towards /= np.linalg.norm(towards, axis=1, keepdims=True)
+            self.assertLessEqual(np.abs(directions - towards).max(), most_px / 100, options)
+            intrinsics = field.intrinsics[field.intrinsics_index[i]]
+            self.assertEqual(field.image(i).shape[:2], (intrinsics.height, intrinsics.width))
+        return field
+
+    def error(self, folder):
+        with self.assertRaises(lf.InputError) as caught:
+            lf.open(folder)
+        return str(caught.exception)
+
+    def test_opensfm(self):
+        write = write_exports.write_opensfm
+        sizes = [(160, 120), (120, 160), (160, 120), (100, 100)]
+        self.check(write, random_views(sizes=sizes))
+        self.check(write, model="perspective", k1=-0.1, k2=0.02)
+        self.check(write, model="simple_radial", k1=-0.08)
+        self.check(write, model="radial", k1=-0.1, k2=0.02)
+        self.check(write, model="brown", k1=-0.1, k2=0.02, k3=-0.003, p1=0.002, p2=-0.001)
+        self.check(write, model="fisheye", k1=-0.02, k2=0.004, reach=1)
+        self.check(write, model="fisheye_opencv", k1=-0.02, k2=0.004, k3=0.001, k4=-0.0005, reach=1)
+        self.check(write, model="fisheye62", k1=-0.02, k2=0.004, k3=0.001, k4=-0.0005, p1=0.002, p2=-0.001, reach=1)
+        self.check(write, model="fisheye624", k1=-0.02, k2=0.004, p1=0.002, p2=-0.001, s0=0.003, s2=-0.002, reach=1)
+        self.check(write, model="fisheye62", k1=-0.02, k5=0.0004, k6=-0.0001, reach=1)
+        self.assertIn("fisheye62", self.wrong(write, model="fisheye62", k5=0.0004, p1=0.01))
+        self.assertIn('lens model "spherical"', self.wrong(write, model="spherical"))
+
+    def wrong(self, write, **options):
+        folder = self.folder()
+        write(folder, random_views(), **options)
+        return self.error(folder)
+
+    def test_opensfm_images_lie_beside_the_folder_of_opendronemap(self):
+        folder = self.folder()
+        (folder / "opensfm").mkdir()
+        views = random_views()
+        project = write_exports.write_opensfm(folder / "opensfm", views, images="../images")
+        field = lf.open(folder)
+        points = write_exports.points_before(views[2])
+        self.assertLessEqual(np.abs(field.project(2, points) - project(2, points)).max(), MOST_PX)
+        self.assertEqual(field.image(2).shape[:2], (120, 160))
+
+    def test_meshroom(self):
+        write = write_exports.write_meshroom
+        for version in ((1, 0, 0), (1, 2, 0), (1, 2, 1), (1, 2, 2), (1, 2, 4), (1, 2, 5), (1, 2, 8), (1, 2, 11)):
+            self.check(write, version=version, distortion="radialk3", lens=(-0.1, 0.02, -0.003))
+        self.check(write, random_views(size=(120, 160)))
+        self.check(write, name="sfm.json")
+        self.check(write, in_rig=True)
+        self.check(write, distortion="radialk1", lens=[-0.1])
+        self.check(write, distortion="radialk3pt", lens=(-0.1, 0.02, -0.003))
+        self.check(write, distortion="brown", lens=(-0.1, 0.02, -0.003, 0.002, -0.001))
+        self.check(write, distortion="fisheye", lens=(-0.02, 0.004, 0.001, -0.0005))
+        self.check(write, distortion="fisheye1", lens=[0.9])
+        self.check(write, version=(1, 2, 4), distortion="fisheye", lens=(-0.02, 0.004, 0.001, -0.0005))
+
+    def test_meshroom_scenes_are_found_in_the_cache(self):
+        folder = self.folder()
+        inner = folder / "MeshroomCache" / "StructureFromMotion" / "0a1b2c"
+        inner.mkdir(parents=True)
+        views = random_views()
+        project = write_exports.write_meshroom(inner, views)
+        field = lf.open(folder)
+        points = write_exports.points_before(views[1])
+        self.assertLessEqual(np.abs(field.project(1, points) - project(1, points)).max(), MOST_PX)
+
+    def test_openmvg(self):
+        write = write_exports.write_openmvg
+        self.check(write)
+        self.check(write, model="pinhole_radial_k1", lens=[-0.1])
+        self.check(write, model="pinhole_radial_k3", lens=(-0.1, 0.02, -0.003))
+        self.check(write, model="pinhole_brown_t2", lens=(-0.1, 0.02, -0.003, 0.002, -0.001))
+        self.check(write, model="fisheye", lens=(-0.02, 0.004, 0.001, -0.0005))
+        self.assertIn('lens model "spherical"', self.wrong(write, model="spherical"))
+
+    def test_bundler(self):
+        write = write_exports.write_bundler
+        sizes = [(160, 120), (120, 160), (160, 121), (99, 100)]
+        self.check(write, random_views(sizes=sizes), k1=-0.1, k2=0.02)
+        self.check(write, name="scan.out", list_name="scan.list.txt")
+
+    def test_nvm(self):
+        write = write_exports.write_nvm
+        sizes = [(160, 120), (120, 160), (160, 121), (99, 100)]
+        self.check(write, random_views(sizes=sizes))
+        self.check(write, header="NVM_V3_R9T")
+        self.check(write, fixed=(151.0, 81.5, 148.0, 58.25))
+        # The inverse of the distortion is approximated.
+        self.check(write, r=0.06, most_px=1e-5)
+        self.check(write, r=-0.06, most_px=1e-5)
+        self.assertIn("the radial distortion -0.8 of VisualSFM is too large", self.wrong(write, r=-0.8))
+
+    def test_splat_cameras(self):
+        self.check(write_exports.write_splat_cameras)
+
+    def test_mvsnet(self):
+        field = self.check(write_exports.write_mvsnet)
+        self.assertEqual(field.depth_range, (1.5, 9.5))
+        self.check(write_exports.write_mvsnet, opened="cams")
+        self.check(write_exports.write_mvsnet, opened="cams/view1_cam.txt", extension=".png")
+        self.check(write_exports.write_mvsnet, scale=0.25)
+
+    def test_nerfies(self):
+        field = self.check(write_exports.write_nerfies, k1=-0.1, k2=0.02, k3=-0.003, p1=0.002, p2=-0.001)
+        self.assertEqual(field.depth_range, (1.5, 8.0))
+        self.check(write_exports.write_nerfies, opened="camera/view2.json")
+        self.check(write_exports.write_nerfies, scale=2)
+
+
+if __name__ == "__main__":
+    sys.path.insert(0, str(pathlib.Path(sys.argv[1]).resolve().parents[1]))
+    import lfrendertools as lf
+    sys.exit(unittest.main(argv=[sys.argv[0], *sys.argv[2:]], verbosity=2))
