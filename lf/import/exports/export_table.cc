@@ -2,6 +2,8 @@
 // The rows of ExportForms(), apart from the functions that look for them.
 #include "lf/import/exports/export_forms.h"
 #include "lf/import/exports/read_bundler.h"
+#include "lf/import/exports/read_google_models.h"
+#include "lf/import/exports/read_kapture.h"
 #include "lf/import/exports/read_meshroom.h"
 #include "lf/import/exports/read_metashape.h"
 #include "lf/import/exports/read_mvsnet.h"
@@ -9,8 +11,10 @@
 #include "lf/import/exports/read_nvm.h"
 #include "lf/import/exports/read_openmvg.h"
 #include "lf/import/exports/read_opensfm.h"
+#include "lf/import/exports/read_polycam.h"
 #include "lf/import/exports/read_reality_csv.h"
 #include "lf/import/exports/read_reality_xmp.h"
+#include "lf/import/exports/read_record3d.h"
 #include "lf/import/exports/read_splat_cameras.h"
 
 namespace lf {
@@ -113,11 +117,47 @@ void AddFormsThatAreRead(std::vector<ExportForm>* forms) {
       .has_parts = true,
       .read = ReadRealityXmp,
   });
+  forms->push_back({
+      .name = "a recording of Record3D",
+      .listed = "metadata or metadata.json (Record3D)",
+      .places = {"metadata", "metadata.json", "EXR_RGBD/metadata.json"},
+      .words = {"\"poses\"", "\"K\""},
+      .read = ReadRecord3d,
+  });
+  forms->push_back({
+      .name = "raw data of Polycam",
+      .listed = "keyframes/corrected_cameras/*.json (Polycam)",
+      .places = {"keyframes/corrected_cameras/*.json", "corrected_cameras/*.json",
+                 "keyframes/cameras/*.json", "cameras/*.json"},
+      .words = {"\"t_00\"", "\"t_23\""},
+      .has_parts = true,
+      .read = ReadPolycam,
+  });
+  forms->push_back({
+      .name = "a data set in the form of Google's Spaces",
+      .listed = "models.json (Google's Spaces and Immersive Light Field Video)",
+      .places = {"models.json"},
+      .words = {"\"orientation\"", "\"principal_point\"", "\"focal_length\""},
+      .read = ReadGoogleModels,
+  });
+  forms->push_back({
+      .name = "a data set of kapture",
+      .listed = "sensors/sensors.txt (kapture)",
+      .places = {"sensors/sensors.txt", "sensors.txt"},
+      .names = {"records_camera.txt", "trajectories.txt", "rigs.txt"},
+      .words = {"kapture format"},
+      .read = ReadKapture,
+  });
 }
 
 // Adds the rows of forms that are not read. Each advice ends a message, and leads to a form that is
 // read.
 void AddFormsThatAreNotRead(std::vector<ExportForm>* forms) {
+  forms->push_back({
+      .name = "a recording of Record3D, which is an archive that is not looked into",
+      .places = {"*.r3d"},
+      .advice = "unpack it like a zip file, and give the folder with the file metadata",
+  });
   forms->push_back({
       .name = "a photograph of a Lytro camera, which is decoded by other programs",
       .places = {"*.lfr", "*.lfp"},

@@ -22,11 +22,10 @@ namespace lf {
 
 // Parses the text of a file. An image is named by the label of its camera, which often lacks the
 // extension. Its pose is the transform of the camera or, in a rig, the transform of its master
-// after the place of its sensor relative to the master's; then that of its component or chunk:
-//   world_from_cam = component * master_from_chunk... * sensor offset
-// World units are those of the chunk's coordinate system, metres as a rule, or the chunk's own if
-// the chunk is not scaled; a message says which. A geographic coordinate system is not projected:
-// positions are geocentric.
+// after the place of its sensor relative to the master's; then the transform of its component or of
+// the chunk. World units are those of the chunk's coordinate system, metres as a rule, or the
+// chunk's own if the chunk is not scaled; a message says which. A geographic coordinate system is
+// not projected: positions are geocentric.
 // Left out, and counted in a warning: cameras that are disabled or were not aligned, and those of
 // components that are not placed relative to the component with most cameras.
 // kInput: no cameras; several chunks; a lens other than frame or equidistant fish-eye; a

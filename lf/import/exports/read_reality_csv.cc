@@ -14,39 +14,13 @@
 
 #include "lf/core/log.h"
 #include "lf/core/parse_number.h"
+#include "lf/import/exports/comma_fields.h"
 #include "lf/import/exports/import_limits.h"
 #include "lf/import/exports/reality_lens.h"
 
 namespace lf {
 namespace fs = std::filesystem;
 namespace {
-
-constexpr size_t kMostCsvColumns = 200;
-
-std::string_view TrimmedField(std::string_view text) {
-  constexpr std::string_view kFieldBlanks = " \t\r\"";
-  const size_t begin = text.find_first_not_of(kFieldBlanks);
-  if (begin == text.npos) return {};
-  return text.substr(begin, text.find_last_not_of(kFieldBlanks) + 1 - begin);
-}
-
-// Takes the next line from the text.
-std::string_view TakeCsvLine(std::string_view* text) {
-  const std::string_view line = text->substr(0, text->find('\n'));
-  text->remove_prefix(std::min(text->size(), line.size() + 1));
-  return line;
-}
-
-std::vector<std::string_view> CsvFields(std::string_view line) {
-  std::vector<std::string_view> fields;
-  while (fields.size() < kMostCsvColumns) {
-    const size_t comma = line.find(',');
-    fields.push_back(TrimmedField(line.substr(0, comma)));
-    if (comma == line.npos) break;
-    line.remove_prefix(comma + 1);
-  }
-  return fields;
-}
 
 // The columns of a file.
 class CsvColumns {
@@ -55,7 +29,7 @@ class CsvColumns {
   // blank in the name of a column is a remark.
   static std::optional<CsvColumns> Of(std::string_view line) {
     CsvColumns columns;
-    for (const std::string_view field : CsvFields(line))
+    for (const std::string_view field : CommaFields(line))
       columns.names_.push_back(field.substr(0, field.find(' ')));
     std::string_view& first = columns.names_[0];
     if (first.starts_with('#')) first.remove_prefix(1);
@@ -177,11 +151,11 @@ Result<ExportedCameras> ParseRealityCsv(std::string_view text, const fs::path& f
   cameras.sizes_from = SizesFrom::kEachImage;
   std::optional<CsvColumns> columns;
   for (size_t line_number = 1; !text.empty(); ++line_number) {
-    const std::string_view line = TakeCsvLine(&text);
+    const std::string_view line = TakeLine(&text);
     if (!columns) columns = CsvColumns::Of(line);
     if (TrimmedField(line).empty() || line.starts_with('#') || !columns || line.starts_with("name"))
       continue;
-    const CsvRow row{*columns, CsvFields(line), line_number, file};
+    const CsvRow row{*columns, CommaFields(line), line_number, file};
     LF_ASSIGN_OR_RETURN(ExportedImage image,
                         IsOpenCvForm(*columns) ? ImageOfMatrix(row) : ImageOfAngles(row));
     image.name = row.fields[0];

@@ -23,8 +23,9 @@ namespace lf {
 //   f                     focal length as on a 35 mm film: f / 36 of the image's larger side
 //   px, py                principal point: offset from the image's middle, as a share of its larger
 //                         side
-//   tx, ty, tz; R00...    cam_from_world; f_pix, px_pix, py_pix: in pixels from the upper left
-//   corner k1 ... t2             coefficients of Brown's distortion (RealityDistortion())
+//   tx, ty, tz; R00...    cam_from_world
+//   f_pix, px_pix, py_pix in pixels, from the upper left corner
+//   k1 ... t2             coefficients of Brown's distortion (RealityDistortion())
 // The image files state the sizes. Warns if k1 alone is not 0, because this may also be the
 // division model. kInput names the line, the column and the value: no header; a column is missing,
 // as in exports of geographic positions or without lenses; a number that is none or too large.
