@@ -4,6 +4,7 @@
 
 usage: exports_test.py EXTENSION    EXTENSION: the compiled module of the Python package
 """
+import dataclasses
 import pathlib
 import sys
 import tempfile
@@ -12,6 +13,7 @@ import unittest
 import numpy as np
 
 import write_exports
+import write_scans
 from write_exports import random_views
 
 lf = None
@@ -37,12 +39,12 @@ class ExportsTest(unittest.TestCase):
         folder = self.folder()
         project = write(folder, views, **options)
         field = lf.open(folder / opened)
-        self.assertEqual(len(field), len(views))
-        for i, view in enumerate(views):
-            name = pathlib.PurePath(field.names[i])
-            self.assertEqual(name.stem, view.name)
+        stems = [pathlib.PurePath(name).stem for name in field.names]
+        self.assertEqual(sorted(stems), sorted(view.name for view in views))
+        for number, view in enumerate(views):
+            i = stems.index(view.name)
             points = write_exports.points_before(view, reach=reach)
-            expected = project(i, points)
+            expected = project(number, points)
             self.assertLessEqual(np.abs(field.project(i, points) - expected).max(), most_px, options)
             origins, directions = field.rays(i, expected)
             self.assertLessEqual(np.abs(origins - view.centre).max(), 1e-9)
@@ -154,6 +156,77 @@ class ExportsTest(unittest.TestCase):
         self.assertEqual(field.depth_range, (1.5, 8.0))
         self.check(write_exports.write_nerfies, opened="camera/view2.json")
         self.check(write_exports.write_nerfies, scale=2)
+
+    def test_metashape(self):
+        write = write_scans.write_metashape
+        lens = {"b1": 1.5, "b2": -0.75, "k1": -0.1, "k2": 0.02, "k3": -0.003, "p1": 0.002, "p2": -0.001}
+        self.check(write)
+        self.check(write, lens=lens)
+        self.check(write, lens={**lens, "k4": 0.004}, placed_by="component", extension=".png")
+        self.check(write, lens=lens, rig=True)
+        self.check(write, lens=lens, rig=True, placed_by=None)
+        self.check(write, lens={"k1": 0.05, "k2": -0.01, "b1": 1.5}, fisheye=True, reach=1)
+        self.check(write, lens={"k1": 0.05, "k2": -0.01, "p1": 0.002, "p2": -0.001}, fisheye=True, reach=1)
+
+    def test_reality_csv(self):
+        sizes = [(160, 120), (120, 160), (160, 120), (100, 100)]
+        for write in (write_scans.write_reality_csv, write_scans.write_reality_opencv):
+            self.check(write, random_views(sizes=sizes))
+            self.check(write, random_views(sizes=sizes), k1=-0.1, k2=0.02, k3=-0.003, t1=0.002, t2=-0.001)
+            self.check(write, k1=-0.1, k2=0.02, k3=-0.003, k4=0.004, t1=0.002, t2=-0.001)
+        self.check(write_scans.write_reality_csv, yaw="yaw", k1=-0.1, k2=0.02)
+
+    def test_reality_angles_of_other_conventions_are_off_by_pixels(self):
+        views = random_views()
+        field = self.check(write_scans.write_reality_csv, views)
+        matrix = write_scans.reality_matrix
+        conventions = {
+            "yaw counter-clockwise": lambda y, p, r: matrix(-y, p, r),
+            "pitch downwards": lambda y, p, r: matrix(y, -p, r),
+            "roll to the left": lambda y, p, r: matrix(y, p, -r),
+            "pitch and roll exchanged": lambda y, p, r: matrix(y, r, p),
+            "pitch of the view, not of the aircraft": lambda y, p, r: matrix(y, p + 90, r),
+            "world from camera": lambda y, p, r: matrix(y, p, r).T,
+            "the camera's upper side towards the tail": lambda y, p, r: np.diag([-1, -1, 1]) @ matrix(y, p, r),
+        }
+        for name, convention in conventions.items():
+            off = []
+            for i, view in enumerate(views):
+                points = write_exports.points_before(view)
+                rotation = convention(*write_scans.reality_angles(view.rotation))
+                there = write_scans.reality_pixels((points - view.centre) @ rotation.T, view.size, {})
+                off.append(np.abs(field.project(i, points) - there).max())
+            self.assertGreater(max(off), 5, name)
+
+    def test_reality_xmp(self):
+        write = write_scans.write_reality_xmp
+        sizes = [(160, 120), (120, 160), (160, 120), (100, 100)]
+        self.check(write, random_views(sizes=sizes), k1=-0.1, k2=0.02, k3=-0.003)
+        self.check(write, model="perspective")
+        self.check(write, opened="images/view1.xmp", as_elements=True, model="brown4t2", k1=-0.1, k2=0.02, k3=-0.003,
+                   k4=0.004, t1=0.002, t2=-0.001)
+        self.assertIn("division", self.wrong(write, model="division", k1=-0.1))
+
+    def test_record3d(self):
+        write = write_scans.write_record3d
+        views = [dataclasses.replace(view, name=str(number)) for number, view in enumerate(random_views())]
+        self.check(write, views)
+        self.check(write, views, each=False, images="rgb", name="metadata.json")
+        self.check(write, views, opened="metadata.json", images="images", name="metadata.json")
+
+    def test_polycam(self):
+        self.check(write_scans.write_polycam)
+        self.check(write_scans.write_polycam, opened="keyframes", kind="")
+
+    def test_google_models(self):
+        self.check(write_scans.write_google_models)
+        self.check(write_scans.write_google_models, fisheye=True, reach=1)
+
+    def test_kapture(self):
+        write = write_scans.write_kapture
+        self.check(write, model="PINHOLE")
+        self.check(write, opened="sensors", k1=-0.1, k2=0.02, p1=0.002, p2=-0.001)
+        self.check(write, opened="sensors/records_camera.txt", rig=True, k1=-0.1, p1=0.002)
 
 
 if __name__ == "__main__":
