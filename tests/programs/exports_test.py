@@ -31,12 +31,12 @@ class ExportsTest(unittest.TestCase):
         folder.mkdir()
         return folder
 
-    def check(self, write, views=None, opened=".", most_px=MOST_PX, reach=0.42, **options):
+    def check(self, write, views=None, opened=".", most_px=MOST_PX, reach=0.42, said=None, **options):
         """Writes an export, opens it, and compares positions of points in both directions. Returns the light field."""
         views = views or random_views()
         folder = self.folder()
         project = write(folder, views, **options)
-        field = lf.open(folder / opened)
+        field = lf.open(folder / opened, **(said or {}))
         self.assertEqual(len(field), len(views))
         for i, view in enumerate(views):
             name = pathlib.PurePath(field.names[i])
@@ -154,6 +154,16 @@ class ExportsTest(unittest.TestCase):
         self.assertEqual(field.depth_range, (1.5, 8.0))
         self.check(write_exports.write_nerfies, opened="camera/view2.json")
         self.check(write_exports.write_nerfies, scale=2)
+
+    def test_nsvf(self):
+        self.check(write_exports.write_nsvf)
+        self.check(write_exports.write_nsvf, matrix=True)
+        self.check(write_exports.write_nsvf, opened="pose/2.txt")
+
+    def test_tum(self):
+        self.check(write_exports.write_tum, said={"focal_px": 150})
+        self.assertIn("does not state the focal length of the camera: give it in pixels (focal_px",
+                      self.wrong(write_exports.write_tum))
 
 
 if __name__ == "__main__":
