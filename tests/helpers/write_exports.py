@@ -373,3 +373,40 @@ def write_nerfies(folder, views, scale=1, **lens):
         x, y = brown(plane(views[i].camera_points(points)), **lens).T
         return np.stack([focal * x + skew * y + cx, focal * ratio * y + cy], axis=1) / scale
     return project
+
+
+# NSVF: data/data_utils.py (load_intrinsics, get_uv), data/geometry.py (uv2cam). Pixel centres are at whole numbers.
+
+def write_nsvf(folder, views, matrix=False):
+    (folder / "pose").mkdir(parents=True)
+    focal, cx, cy = 151.0, 81.5, 58.25
+    for number, view in enumerate(views):
+        world_from_cam = np.eye(4)
+        world_from_cam[:3, :3], world_from_cam[:3, 3] = view.rotation.T, view.centre
+        (folder / "pose" / f"{number}.txt").write_text(
+            "".join(" ".join(texts(row)) + "\n" for row in world_from_cam))
+    k = f"{focal} 0 {cx} 0\n0 {focal} {cy} 0\n0 0 1 0\n0 0 0 1\n" if matrix else f"{focal} {cx} {cy} 0.\n0. 0. 0.\n"
+    (folder / "intrinsics.txt").write_text(k)
+    write_images(folder / "rgb", views)
+
+    def project(i, points):
+        return plane(views[i].camera_points(points)) * focal + [cx, cy] + 0.5
+    return project
+
+
+# TUM's RGB-D benchmark: "File Formats"
+
+def write_tum(folder, views):
+    lines, names = ["# timestamp tx ty tz qx qy qz qw"], ["# timestamp filename"]
+    for number, view in enumerate(views):
+        w, x, y, z = quaternion(view.rotation.T)
+        lines.append(f"{1305031449.5 + number} " + " ".join(texts([*view.centre, x, y, z, w])))
+        names.append(f"{1305031449.5 + number} rgb/{view.name}.png")
+    (folder / "groundtruth.txt").write_text("\n".join(lines) + "\n")
+    (folder / "rgb.txt").write_text("\n".join([*names, "1305031999 rgb/lost.png"]) + "\n")
+    write_images(folder / "rgb", views)
+
+    def project(i, points):
+        width, height = views[i].size
+        return plane(views[i].camera_points(points)) * 150 + [width / 2, height / 2]
+    return project

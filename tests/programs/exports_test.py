@@ -33,12 +33,12 @@ class ExportsTest(unittest.TestCase):
         folder.mkdir()
         return folder
 
-    def check(self, write, views=None, opened=".", most_px=MOST_PX, reach=0.42, **options):
+    def check(self, write, views=None, opened=".", most_px=MOST_PX, reach=0.42, said=None, **options):
         """Writes an export, opens it, and compares positions of points in both directions. Returns the light field."""
         views = views or random_views()
         folder = self.folder()
         project = write(folder, views, **options)
-        field = lf.open(folder / opened)
+        field = lf.open(folder / opened, **(said or {}))
         stems = [pathlib.PurePath(name).stem for name in field.names]
         self.assertEqual(sorted(stems), sorted(view.name for view in views))
         for number, view in enumerate(views):
@@ -227,6 +227,16 @@ class ExportsTest(unittest.TestCase):
         self.check(write, model="PINHOLE")
         self.check(write, opened="sensors", k1=-0.1, k2=0.02, p1=0.002, p2=-0.001)
         self.check(write, opened="sensors/records_camera.txt", rig=True, k1=-0.1, p1=0.002)
+
+    def test_nsvf(self):
+        self.check(write_exports.write_nsvf)
+        self.check(write_exports.write_nsvf, matrix=True)
+        self.check(write_exports.write_nsvf, opened="pose/2.txt")
+
+    def test_tum(self):
+        self.check(write_exports.write_tum, said={"focal_px": 150})
+        self.assertIn("does not state the focal length of the camera: give it in pixels (focal_px",
+                      self.wrong(write_exports.write_tum))
 
 
 if __name__ == "__main__":

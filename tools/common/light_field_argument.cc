@@ -15,7 +15,9 @@ void AddUnusualOptions(CLI::App& app, LightFieldArgument& argument) {
       .Add("--focal-px PIXELS", argument.focal_px,
            "Focal length of the LF cameras (as recorded)\n"
            "In pixels of the LF images. Needed if LIGHTFIELD is a folder of images with Stanford "
-           "names (doc/formats/stanford.md) that do not contain the focal length.")
+           "names (doc/formats/stanford.md) that do not contain the focal length, or a trajectory "
+           "in "
+           "the form of TUM's benchmark (doc/formats/tum.md).")
       ->check(CLI::NonNegativeNumber);
   unusual
       .Add("--fov-deg DEGREES", argument.fov_deg,

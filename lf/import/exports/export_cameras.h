@@ -47,6 +47,9 @@ struct ExportedCameras {
 struct ExportOptions {
   // Folder in which image files are searched by name (FindImageFiles()).
   std::optional<std::filesystem::path> images_folder = {};
+  // Focal length of all cameras in pixels, for forms that do not state it
+  // (ExportForm::takes_focal).
+  std::optional<double> focal_px = {};
   // The source of the sizes that the export does not state. Fuzz targets and unit tests replace it.
   ImageSizeSource image_size = ImageSizeInHeader;
 };

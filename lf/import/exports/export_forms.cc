@@ -38,8 +38,10 @@ std::string HeadOf(const fs::path& file) {
   return head;
 }
 
-// Returns true if the file holds the words of the form.
-bool HoldsWords(const ExportForm& form, const fs::path& file) {
+// Returns true if the file holds the words of the form, and if what must lie beside it is there.
+bool FitsInside(const ExportForm& form, const fs::path& file) {
+  std::error_code error;
+  if (!form.beside.empty() && !fs::exists(FolderAbove(file) / form.beside, error)) return false;
   if (form.words.empty()) return true;
   const std::string head = HeadOf(file);
   return std::all_of(form.words.begin(), form.words.end(),
@@ -102,7 +104,7 @@ std::vector<fs::path> FilesOf(const ExportForm& form, FilesByPattern* files) {
     // Only the first of many parts are read, because a data set may have one for each of its
     // images.
     if (form.has_parts && found.size() > kMostPartsLookedAt) found.resize(kMostPartsLookedAt);
-    std::erase_if(found, [&](const fs::path& file) { return !HoldsWords(form, file); });
+    std::erase_if(found, [&](const fs::path& file) { return !FitsInside(form, file); });
     if (form.has_parts && found.size() > 1) found.resize(1);
     if (!found.empty()) return found;
   }
@@ -117,7 +119,7 @@ const ExportForm* ExportFormOf(const fs::path& file) {
     const auto fits = [&](std::string_view pattern) { return Fits(LastPart(pattern), name); };
     if ((std::any_of(form.places.begin(), form.places.end(), fits) ||
          std::any_of(form.names.begin(), form.names.end(), fits)) &&
-        HoldsWords(form, file))
+        FitsInside(form, file))
       return &form;
   }
   return nullptr;

@@ -30,9 +30,13 @@ struct ExportForm {
   std::vector<std::string_view> names = {};
   // Texts that all occur in the first MiB of the file.
   std::vector<std::string_view> words = {};
+  // A file that must exist, named from the folder of the file that fits; empty: none.
+  std::string_view beside = {};
   // True: the files that fit are parts of one light field, of which any leads to the others.
   // False: each is a light field of its own.
   bool has_parts = false;
+  // True: the form does not state the focal length, so that ExportOptions::focal_px is needed.
+  bool takes_focal = false;
   // Reads the light field to which a file belongs. nullptr: the form is not read.
   Result<LightField> (*read)(const std::filesystem::path& file,
                              const ExportOptions& options) = nullptr;

@@ -8,6 +8,7 @@
 #include "lf/import/exports/read_metashape.h"
 #include "lf/import/exports/read_mvsnet.h"
 #include "lf/import/exports/read_nerfies.h"
+#include "lf/import/exports/read_nsvf.h"
 #include "lf/import/exports/read_nvm.h"
 #include "lf/import/exports/read_openmvg.h"
 #include "lf/import/exports/read_opensfm.h"
@@ -16,6 +17,7 @@
 #include "lf/import/exports/read_reality_xmp.h"
 #include "lf/import/exports/read_record3d.h"
 #include "lf/import/exports/read_splat_cameras.h"
+#include "lf/import/exports/read_tum.h"
 
 namespace lf {
 namespace {
@@ -150,6 +152,26 @@ void AddFormsThatAreRead(std::vector<ExportForm>* forms) {
   });
 }
 
+// Adds the rows of forms whose names alone tell them.
+void AddFormsOfTexts(std::vector<ExportForm>* forms) {
+  forms->push_back({
+      .name = "a data set of NSVF",
+      .listed = "pose/*.txt with intrinsics.txt (NSVF)",
+      .places = {"pose/*.txt"},
+      .beside = "../intrinsics.txt",
+      .has_parts = true,
+      .read = ReadNsvf,
+  });
+  forms->push_back({
+      .name = "a trajectory in the form of TUM's benchmark",
+      .listed = "groundtruth.txt with rgb.txt (TUM)",
+      .places = {"groundtruth.txt", "CameraTrajectory.txt", "KeyFrameTrajectory.txt"},
+      .beside = "rgb.txt",
+      .takes_focal = true,
+      .read = ReadTum,
+  });
+}
+
 // Adds the rows of forms that are not read. Each advice ends a message, and leads to a form that is
 // read.
 void AddFormsThatAreNotRead(std::vector<ExportForm>* forms) {
@@ -239,6 +261,7 @@ std::span<const ExportForm> ExportForms() {
   static const std::vector<ExportForm> forms = [] {
     std::vector<ExportForm> rows;
     AddFormsThatAreRead(&rows);
+    AddFormsOfTexts(&rows);
     AddFormsThatAreNotRead(&rows);
     return rows;
   }();

@@ -10,13 +10,13 @@
 
 namespace lf {
 
+// Checks that an error names a file in the folder f/.
+inline void CheckFault(const Error& error) { LF_CHECK(error.message.starts_with("f/")); }
+
 // Checks what a reader made of any bytes: an error that names a file in the folder f/, or cameras
 // of which FinishExport() makes a valid light field or such an error.
 inline void CheckExport(const Result<ExportedCameras>& parsed) {
-  if (!parsed) {
-    LF_CHECK(parsed.error().message.starts_with("f/"));
-    return;
-  }
+  if (!parsed) return CheckFault(parsed.error());
   const ExportOptions options = {.image_size = [](const std::filesystem::path&) {
     return Result(std::array{640, 480});
   }};

@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size_bytes) {
   lf::ExportedCameras cameras;
   const auto parsed = lf::ParseMvsnetCamera(text, "f/a_cam.txt");
   if (!parsed) {
-    lf::CheckExport(parsed.error());
+    lf::CheckFault(parsed.error());
     return 0;
   }
   cameras.images = {parsed->image};

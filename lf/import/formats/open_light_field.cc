@@ -114,24 +114,32 @@ Result<LightField> OpenPackedStore(const fs::path& path, const OpenOptions& opti
   return std::move(facts.light_field);
 }
 
-// Returns kUsage if an option is given that the exports of other programs do not need.
-Result<void> CheckExportOptions(const fs::path& path, const OpenOptions& options) {
+// Returns kUsage if an option is given that the export of another program does not need.
+Result<void> CheckExportOptions(const ExportForm& form, const fs::path& path, OpenOptions options) {
+  if (form.takes_focal) options.focal_px.reset();
   LF_RETURN_IF_ERROR(CheckNoStanfordOptions(path, options));
   return CheckNoFov(path, options);
 }
 
+ExportOptions ExportOptionsOf(const OpenOptions& options) {
+  return {.images_folder = options.images_folder, .focal_px = options.focal_px};
+}
+
 // Opens an export of another program. Returns nullopt if the file is none.
 std::optional<Result<LightField>> OpenExport(const fs::path& path, const OpenOptions& options) {
-  if (ExportFormOf(path) == nullptr) return std::nullopt;
-  if (Result<void> result = CheckExportOptions(path, options); !result) return result.error();
-  return OpenExportFile(path, {.images_folder = options.images_folder});
+  const ExportForm* const form = ExportFormOf(path);
+  if (form == nullptr) return std::nullopt;
+  if (Result<void> result = CheckExportOptions(*form, path, options); !result)
+    return result.error();
+  return OpenExportFile(path, ExportOptionsOf(options));
 }
 
 // Opens the first export in a folder, which must hold one.
 Result<LightField> OpenFirstExport(const fs::path& folder, const OpenOptions& options) {
-  LF_RETURN_IF_ERROR(CheckExportOptions(folder, options));
-  std::optional<Result<LightField>> opened =
-      OpenExportIn(folder, {.images_folder = options.images_folder});
+  const std::vector<FoundExport> found = ExportsIn(folder, /*reads=*/true);
+  LF_CHECK(!found.empty());
+  LF_RETURN_IF_ERROR(CheckExportOptions(*found[0].form, folder, options));
+  std::optional<Result<LightField>> opened = OpenExportIn(folder, ExportOptionsOf(options));
   LF_CHECK(opened.has_value());
   return *std::move(opened);
 }

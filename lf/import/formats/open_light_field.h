@@ -16,8 +16,9 @@ namespace lf {
 
 struct OpenOptions {
   // focal_px to flip_y complete or override what the file names in a folder with Stanford names say
-  // (StanfordOptions, import/formats/read_stanford.h). If one of them is set, opening a calibration
-  // of another kind returns kUsage. Several programs have an option for focal_px; only lfimport has
+  // (StanfordOptions, import/formats/read_stanford.h), and focal_px also trajectories of TUM's form
+  // (import/exports/read_tum.h). If one of them is set, opening a calibration of another kind
+  // returns kUsage. Several programs have an option for focal_px; only lfimport has
   // options for the others.
   std::optional<double> focal_px = {};
   std::optional<Vec2> pitch_w = {};
