@@ -49,7 +49,7 @@ void LightFieldArgument::AddTo(CLI::App& app) {
       .Add("LIGHTFIELD", path,
            "Calibration file, its folder, or a packed store\n"
            "The calibration is a transforms.json, a calibration of COLMAP, Middlebury, LLFF, "
-           "HCI or AOS, or an export of another program, such as OpenSfM or Meshroom "
+           "HCI or AOS, or an export of another program, such as Metashape or Meshroom "
            "(doc/inputs.md). A packed store is one file, STORE.lfs. A folder of images with "
            "Stanford "
            "names is also a light field: the names contain the calibration.")
