@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Opens the exports of other programs, and compares the LF cameras with the formulas of these programs.
 
-usage: exports_test.py EXTENSION    EXTENSION: the compiled module of the Python package
+usage: exports_test.py EXTENSION LFIMPORT    EXTENSION: the compiled module of the Python package
 """
 import dataclasses
 import pathlib
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -16,7 +17,7 @@ import write_exports
 import write_scans
 from write_exports import random_views
 
-lf = None
+lf = IMPORT = None
 MOST_PX = 1e-6  # by which a projected point may be off
 
 
@@ -53,7 +54,22 @@ class ExportsTest(unittest.TestCase):
             self.assertLessEqual(np.abs(directions - towards).max(), most_px / 100, options)
             intrinsics = field.intrinsics[field.intrinsics_index[i]]
             self.assertEqual(field.image(i).shape[:2], (intrinsics.height, intrinsics.width))
+        self.check_native(field, folder / opened, said or {})
         return field
+
+    def check_native(self, field, opened, said):
+        """Compares a light field with the transforms.json that lfimport makes of its export."""
+        words = [word for key, value in said.items() for word in ("--" + key.replace("_", "-"), str(value))]
+        native = self.root / f"native{self.count}"
+        subprocess.run([IMPORT, opened, "-o", native, "-q", *words], check=True, capture_output=True, timeout=60)
+        again = lf.open(native)
+        self.assertEqual([pathlib.PurePath(name).name for name in again.names],
+                         [pathlib.PurePath(name).name for name in field.names])
+        self.assertLessEqual(np.abs(again.cam_from_world - field.cam_from_world).max(), 1e-12)
+        self.assertLessEqual(np.abs(again.K - field.K).max(), 1e-9)
+        for i in range(len(field)):
+            one, two = (f.intrinsics[f.intrinsics_index[i]] for f in (field, again))
+            self.assertEqual((one.distortion, one.parameters), (two.distortion, two.parameters))
 
     def error(self, folder):
         with self.assertRaises(lf.InputError) as caught:
@@ -242,4 +258,5 @@ class ExportsTest(unittest.TestCase):
 if __name__ == "__main__":
     sys.path.insert(0, str(pathlib.Path(sys.argv[1]).resolve().parents[1]))
     import lfrendertools as lf
-    sys.exit(unittest.main(argv=[sys.argv[0], *sys.argv[2:]], verbosity=2))
+    IMPORT = pathlib.Path(sys.argv[2])
+    sys.exit(unittest.main(argv=[sys.argv[0], *sys.argv[3:]], verbosity=2))
