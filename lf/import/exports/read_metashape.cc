@@ -168,11 +168,23 @@ class MetashapeChunk {
     MetashapeChunk read(chunk);
     LF_RETURN_IF_ERROR(read.ReadSensors());
     LF_RETURN_IF_ERROR(read.ReadComponents());
-    for (const XmlElement& cameras : chunk.Children("cameras")) read.AddCameras(cameras);
+    for (const XmlElement& cameras : chunk.Children("cameras")) read.AddCameras(cameras, "");
     return read;
   }
 
   const std::vector<XmlElement>& cameras() const { return cameras_; }
+
+  // Returns where the image of a camera may be, beside others of the same label: in a folder named
+  // after the camera's group or, if it is in none, after its sensor. Metashape takes the
+  // photographs of rigs from folders, in which they have the same names.
+  Result<std::string> NameInFolder(const XmlElement& camera) {
+    const std::string label(camera.Attribute("label").value_or(""));
+    LF_ASSIGN_OR_RETURN(const int id, camera.WholeAttribute("id", 0, kMostMetashapeId));
+    const auto in_group = group_of_.find(id);
+    if (in_group != group_of_.end()) return in_group->second + "/" + label;
+    LF_ASSIGN_OR_RETURN(RigSensor* const sensor, SensorOf(camera));
+    return std::string(sensor->element.Attribute("label").value_or("")) + "/" + label;
+  }
 
   Result<Intrinsics> IntrinsicsOfCamera(const XmlElement& camera) {
     LF_ASSIGN_OR_RETURN(RigSensor* const sensor, SensorOf(camera));
@@ -260,14 +272,18 @@ class MetashapeChunk {
   }
 
   // Adds the cameras in an element and in the groups in it. Groups are not nested.
-  void AddCameras(const XmlElement& element) {
+  //   label  that of the group; empty outside of groups
+  void AddCameras(const XmlElement& element, std::string_view label) {
     for (const XmlElement& camera : element.Children("camera")) {
-      if (const auto id = camera.WholeAttribute("id", 0, kMostMetashapeId))
+      if (const auto id = camera.WholeAttribute("id", 0, kMostMetashapeId)) {
         by_id_.emplace(*id, cameras_.size());
+        if (!label.empty()) group_of_.emplace(*id, label);
+      }
       cameras_.push_back(camera);
     }
     if (element.name() == "group") return;
-    for (const XmlElement& group : element.Children("group")) AddCameras(group);
+    for (const XmlElement& group : element.Children("group"))
+      AddCameras(group, group.Attribute("label").value_or(""));
   }
 
   Result<RigSensor*> SensorOf(const XmlElement& camera) {
@@ -284,7 +300,8 @@ class MetashapeChunk {
   std::optional<ChunkPlacement> of_chunk_;
   int active_component_ = 0;
   std::vector<XmlElement> cameras_;
-  std::map<int, size_t> by_id_;  // indices into cameras_
+  std::map<int, size_t> by_id_;          // indices into cameras_
+  std::map<int, std::string> group_of_;  // labels of groups, by the ids of cameras
 };
 
 // Cameras that are left out, as a warning counts them.
@@ -318,6 +335,17 @@ void TellUnit(const fs::path& file, const XmlElement& chunk, bool is_placed) {
           is_local ? "the unit of the chunk's coordinate system, metres as a rule"
                    : "metres, in geocentric coordinates",
           name.empty() ? "" : fmt::format(" ({})", name.substr(0, 80)));
+}
+
+Result<void> CheckDistinct(std::vector<std::string> names, const fs::path& file) {
+  std::sort(names.begin(), names.end());
+  const auto twice = std::adjacent_find(names.begin(), names.end());
+  if (twice == names.end()) return {};
+  return InputError(
+      fmt::format("{}: several cameras have the image \"{}\", because their labels are the same, "
+                  "and no folders have the names of their groups or sensors: give each camera a "
+                  "label of its own in Metashape, and export them again",
+                  file.string(), *twice));
 }
 
 bool IsDisabled(const XmlElement& camera) {
@@ -366,6 +394,9 @@ Result<ExportedCameras> ParseMetashape(std::string_view text, const fs::path& fi
   const auto most = std::max_element(
       counts.begin(), counts.end(),
       [](const auto& one, const auto& other) { return one.second < other.second; });
+  std::map<std::string_view, int> labels;
+  for (const Posed& one : posed)
+    if (one.part.component == most->first) ++labels[one.camera.Attribute("label").value_or("")];
   ExportedCameras cameras;
   cameras.folder = file.parent_path();
   for (const Posed& one : posed) {
@@ -375,6 +406,9 @@ Result<ExportedCameras> ParseMetashape(std::string_view text, const fs::path& fi
     }
     ExportedImage image;
     image.name = one.camera.Attribute("label").value_or("");
+    if (labels.at(image.name) > 1) {
+      LF_ASSIGN_OR_RETURN(image.name, chunk.NameInFolder(one.camera));
+    }
     LF_ASSIGN_OR_RETURN(image.intrinsics, chunk.IntrinsicsOfCamera(one.camera));
     image.cam_from_world =
         CamFromWorld(one.chunk_from_cam, one.part.placement.value_or(ChunkPlacement()));
@@ -388,7 +422,12 @@ Result<ExportedCameras> ParseMetashape(std::string_view text, const fs::path& fi
 Result<LightField> ReadMetashape(const fs::path& file, const ExportOptions& options) {
   LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(file, kMostXmlBytes));
   LF_ASSIGN_OR_RETURN(ExportedCameras cameras, ParseMetashape(text, file));
-  return FinishExport(std::move(cameras), file, options);
+  std::vector<std::string> names;
+  for (const ExportedImage& image : cameras.images) names.push_back(image.name);
+  LF_RETURN_IF_ERROR(CheckDistinct(std::move(names), file));
+  LF_ASSIGN_OR_RETURN(LightField light_field, FinishExport(std::move(cameras), file, options));
+  LF_RETURN_IF_ERROR(CheckDistinct(light_field.image_names, file));
+  return light_field;
 }
 
 }  // namespace lf

@@ -21,11 +21,12 @@
 namespace lf {
 
 // Parses the text of a file. An image is named by the label of its camera, which often lacks the
-// extension. Its pose is the transform of the camera or, in a rig, the transform of its master
-// after the place of its sensor relative to the master's; then the transform of its component or of
-// the chunk. World units are those of the chunk's coordinate system, metres as a rule, or the
-// chunk's own if the chunk is not scaled; a message says which. A geographic coordinate system is
-// not projected: positions are geocentric.
+// extension; if several cameras have one label, by GROUP/LABEL or, outside of groups, SENSOR/LABEL,
+// because Metashape takes the photographs of rigs from folders. Its pose is the transform of the
+// camera or, in a rig, the transform of its master after the place of its sensor relative to the
+// master's; then the transform of its component or of the chunk. World units are those of the
+// chunk's coordinate system, metres as a rule, or the chunk's own if the chunk is not scaled; a
+// message says which. A geographic coordinate system is not projected: positions are geocentric.
 // Left out, and counted in a warning: cameras that are disabled or were not aligned, and those of
 // components that are not placed relative to the component with most cameras.
 // kInput: no cameras; several chunks; a lens other than frame or equidistant fish-eye; a
@@ -34,7 +35,8 @@ namespace lf {
 //   file  for messages; its folder is that of the images
 Result<ExportedCameras> ParseMetashape(std::string_view text, const std::filesystem::path& file);
 
-// Reads a file as ParseMetashape() does. kInput if it has more than kMostXmlBytes.
+// Reads a file as ParseMetashape() does. kInput if it has more than kMostXmlBytes,
+// or if two cameras would have the same image file.
 Result<LightField> ReadMetashape(const std::filesystem::path& file, const ExportOptions& options);
 
 }  // namespace lf

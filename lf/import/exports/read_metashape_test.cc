@@ -3,9 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <string>
 #include <vector>
+
+#include "lf/core/file.h"
+#include "lf/import/exports/test_exports.h"
+#include "lf/pixels/files/test_folder.h"
 
 namespace lf {
 namespace {
@@ -225,6 +231,34 @@ TEST(Metashape, WhatCannotBeReadIsAnErrorThatNamesIt) {
                        {"has the master 9, which is not in the file"});
   ExpectMetashapeError(ChunkWith(kFrame, camera, "<transform><scale>0</scale></transform>"),
                        {"scale is \"0\""});
+}
+
+using MetashapeFolder = FolderTest;
+
+TEST_F(MetashapeFolder, EqualLabelsLeadToFoldersOfGroupsOrSensors) {
+  const auto opened = [&](const std::string& group) {
+    const std::string camera = CameraWith(7, "sensor_id=\"0\"", kIdentity);
+    const std::string other =
+        Replaced(CameraWith(8, "sensor_id=\"0\"", kIdentity), "label=\"8\"", "label=\"7\"");
+    const std::filesystem::path file = folder_ / "cameras.xml";
+    EXPECT_TRUE(WriteFileAtomically(
+        file, ChunkWith(kFrame, "<group label=\"" + group + "\">" + camera + "</group>" + other)));
+    return ReadMetashape(file, {});
+  };
+  for (const std::string& name : {std::string("A"), std::string("left")}) {
+    std::filesystem::create_directories(folder_ / "photos" / name);
+    ASSERT_TRUE(WriteFileAtomically(folder_ / "photos" / name / "7.jpg", "x"));
+  }
+  const Result<LightField> apart = opened("left");
+  ASSERT_TRUE(apart) << apart.error().message;
+  std::vector<std::string> names = apart->image_names;
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(names, (std::vector<std::string>{"photos/A/7.jpg", "photos/left/7.jpg"}));
+  const Result<LightField> together = opened("A");
+  ASSERT_FALSE(together);
+  EXPECT_NE(together.error().message.find("several cameras have the image \"A/7\""),
+            std::string::npos)
+      << together.error().message;
 }
 
 TEST(Metashape, LensesThatNoImageHasMayBeOfAnyKind) {
