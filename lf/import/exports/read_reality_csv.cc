@@ -152,9 +152,11 @@ Result<ExportedCameras> ParseRealityCsv(std::string_view text, const fs::path& f
   std::optional<CsvColumns> columns;
   for (size_t line_number = 1; !text.empty(); ++line_number) {
     const std::string_view line = TakeLine(&text);
-    if (!columns) columns = CsvColumns::Of(line);
-    if (TrimmedField(line).empty() || line.starts_with('#') || !columns || line.starts_with("name"))
+    if (!columns) {
+      columns = CsvColumns::Of(line);
       continue;
+    }
+    if (TrimmedField(line).empty() || line.starts_with('#')) continue;
     const CsvRow row{*columns, CommaFields(line), line_number, file};
     LF_ASSIGN_OR_RETURN(ExportedImage image,
                         IsOpenCvForm(*columns) ? ImageOfMatrix(row) : ImageOfAngles(row));

@@ -93,6 +93,13 @@ TEST(RealityRotation, AgreesWithTheMatrixThatRealityCaptureWroteIntoAnXmpFile) {
   EXPECT_LE((rotation - of_xmp).topRows<2>().cwiseAbs().maxCoeff(), 1e-13);
 }
 
+TEST(RealityCsv, OnlyTheFirstHeaderIsNoImage) {
+  const LightField light_field = OpenedCsv(
+      "#cameras 2\n" + kCsvHeader + "#remark,1\n" + "name_1.jpg,0,0,0,0,0,0,27,0,0,0,0,0,0,0,0\n" +
+      "name,1,0,0,0,0,0,27,0,0,0,0,0,0,0,0\n");
+  EXPECT_EQ(light_field.image_names, (std::vector<std::string>{"name_1.jpg", "name"}));
+}
+
 TEST(RealityCsv, LengthsAreSharesOfTheLargerSide) {
   const LightField light_field =
       OpenedCsv(kCsvHeader + "a.jpg,1,2,3,0,90,0,27,0.01,-0.02,0,0,0,0,0,0\n");
