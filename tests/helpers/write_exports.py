@@ -99,9 +99,11 @@ def opensfm_lens(camera, model, k):
                      v * radial + 2 * p2 * u * v + p1 * (s + 2 * v * v) + s2 * s + s3 * s * s], axis=1)
 
 
-def write_opensfm(folder, views, model="perspective", images="images", **lens):
+def write_opensfm(folder, views, model="perspective", images="images", focal_px=None, **lens):
     two_focals = model not in ("perspective", "fisheye")
     focal = {"focal_x": 0.9, "focal_y": 0.93, "c_x": 0.01, "c_y": -0.02} if two_focals else {"focal": 0.9}
+    if focal_px:
+        focal = {"focal": focal_px / max(views[0].size)}
     cameras, shots = {}, {}
     for view in views:
         width, height = view.size
@@ -255,12 +257,13 @@ def write_openmvg(folder, views, model="pinhole", lens=()):
 
 # Bundler: README, "Output format"
 
-def write_bundler(folder, views, k1=0.0, k2=0.0, name="bundle.out", list_name="list.txt"):
+def write_bundler(folder, views, k1=0.0, k2=0.0, name="bundle.out", list_name="list.txt", focal_px=None):
     flip = np.diag([1.0, -1, -1])
+    focals = [focal_px or 140.0 + number for number in range(len(views))]
     lines = ["# Bundle file v0.3", f"{len(views) + 1} 1"]
     for number, view in enumerate(views):
         rotation, translation = flip @ view.rotation, flip @ view.translation
-        lines += [f"{140.0 + number!r} {k1!r} {k2!r}",
+        lines += [f"{focals[number]!r} {k1!r} {k2!r}",
                   *(" ".join(texts(row)) for row in rotation), " ".join(texts(translation))]
     lines += ["0 0 0", "0 0 0", "0 0 0", "0 0 0", "0 0 0"]  # an image without a pose
     lines += ["1 2 3", "255 0 0", "1 0 7 10.5 -3.25"]
@@ -273,7 +276,7 @@ def write_bundler(folder, views, k1=0.0, k2=0.0, name="bundle.out", list_name="l
         p = points @ rotation.T + translation
         p = -p[:, :2] / p[:, 2:]
         r2 = (p ** 2).sum(axis=1, keepdims=True)
-        x, y = ((140 + i) * (1 + k1 * r2 + k2 * r2 ** 2) * p).T
+        x, y = (focals[i] * (1 + k1 * r2 + k2 * r2 ** 2) * p).T
         # The origin is the middle of the image, x points right and y up.
         width, height = views[i].size
         return np.stack([width / 2 + x, height / 2 - y], axis=1)
@@ -317,15 +320,16 @@ def write_nvm(folder, views, r=0.0, header="NVM_V3", fixed=None):
 
 # 3D Gaussian splatting: utils/camera_utils.py (camera_to_JSON), and ndc2Pix of its rasteriser
 
-def write_splat_cameras(folder, views):
+def write_splat_cameras(folder, views, focal_px=None):
+    focals = [(focal_px or 151.0 + number, focal_px or 148.0 + number) for number in range(len(views))]
     entries = [{"id": number, "img_name": view.name, "width": view.size[0], "height": view.size[1],
                 "position": view.centre.tolist(), "rotation": view.rotation.T.tolist(),
-                "fy": 148.0 + number, "fx": 151.0 + number} for number, view in enumerate(views)]
+                "fx": focals[number][0], "fy": focals[number][1]} for number, view in enumerate(views)]
     (folder / "cameras.json").write_text(json.dumps(entries))
     write_images(folder / "images", views)
 
     def project(i, points):
-        xy = plane(views[i].camera_points(points)) * [151.0 + i, 148.0 + i]
+        xy = plane(views[i].camera_points(points)) * focals[i]
         width, height = views[i].size
         ndc = xy / [width / 2, height / 2]  # from -1 to 1
         return ((ndc + 1) * [width, height] - 1) * 0.5 + 0.5  # ndc2Pix counts pixel centres by whole numbers

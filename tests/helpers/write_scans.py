@@ -49,9 +49,10 @@ def add_transform(parent, rotation, translation, scale):
     xml.SubElement(transform, "scale").text = repr(float(scale))
 
 
-def write_metashape(folder, views, lens=None, fisheye=False, rig=False, placed_by="chunk", extension=""):
+def write_metashape(folder, views, lens=None, fisheye=False, rig=False, placed_by="chunk", extension="",
+                    focal_px=None):
     """With `rig`, every second camera is the slave of the one before, by a sensor of its own."""
-    lens = {"f": 151.0, "cx": 2.5, "cy": -1.25, **(lens or {})}
+    lens = {"f": focal_px} if focal_px else {"f": 151.0, "cx": 2.5, "cy": -1.25, **(lens or {})}
     turn, shift, scale = rotation_about(np.array([0.4, -0.9, 0.3])), np.array([3.0, -2, 7]), 2.5
     if placed_by is None:
         turn, shift, scale = np.eye(3), np.zeros(3), 1
@@ -80,7 +81,7 @@ def write_metashape(folder, views, lens=None, fisheye=False, rig=False, placed_b
     add_sensor(0, views[0])
     for number, view in enumerate(views):
         is_slave = rig and number % 2 == 1
-        camera = xml.SubElement(group if number == 2 else cameras, "camera", id=str(number),
+        camera = xml.SubElement(group if number == len(views) - 1 else cameras, "camera", id=str(number),
                                 label=view.name + extension, sensor_id=str(number if is_slave else 0))
         if is_slave:
             offset = np.linalg.inv(chunk_from_cam(views[number - 1])) @ chunk_from_cam(view)
@@ -99,7 +100,7 @@ def write_metashape(folder, views, lens=None, fisheye=False, rig=False, placed_b
         add_transform(chunk if placed_by == "chunk" else component, turn, shift, scale)
     xml.SubElement(chunk, "reference").text = 'LOCAL_CS["Local Coordinates (m)",UNIT["metre",1]]'
     xml.ElementTree(document).write(folder / "cameras.xml", xml_declaration=True, encoding="UTF-8")
-    write_images(folder / "photos", views)
+    write_images(folder / "images", views)
     return lambda i, points: metashape_pixels(views[i].camera_points(points), views[i].size, lens, fisheye)
 
 
@@ -109,16 +110,20 @@ def write_metashape(folder, views, lens=None, fisheye=False, rig=False, placed_b
 REALITY_LENS = {"f": 34.0, "px": 0.012, "py": -0.02}
 
 
-def reality_pixels(camera, size, k):
+def reality_lens(focal_px, size):
+    return {"f": 36 * focal_px / max(size), "px": 0, "py": 0} if focal_px else REALITY_LENS
+
+
+def reality_pixels(camera, size, k, lens=None):
     x, y = plane(camera).T
     k1, k2, k3, k4, t1, t2 = (k.get(key, 0) for key in ("k1", "k2", "k3", "k4", "t1", "t2"))
     r2 = x * x + y * y
     radial = 1 + k1 * r2 + k2 * r2 ** 2 + k3 * r2 ** 3 + k4 * r2 ** 4
     xd = x * radial + t1 * (r2 + 2 * x * x) + 2 * t2 * x * y
     yd = y * radial + t2 * (r2 + 2 * y * y) + 2 * t1 * x * y
-    side = max(size)
-    return np.stack([size[0] / 2 + side * (REALITY_LENS["px"] + REALITY_LENS["f"] / 36 * xd),
-                     size[1] / 2 + side * (REALITY_LENS["py"] + REALITY_LENS["f"] / 36 * yd)], axis=1)
+    side, lens = max(size), lens or REALITY_LENS
+    return np.stack([size[0] / 2 + side * (lens["px"] + lens["f"] / 36 * xd),
+                     size[1] / 2 + side * (lens["py"] + lens["f"] / 36 * yd)], axis=1)
 
 
 def reality_matrix(yaw_deg, pitch_deg, roll_deg):
@@ -136,16 +141,18 @@ def reality_angles(rotation):
                        np.arctan2(-rotation[0, 2], -rotation[2, 2])])
 
 
-def write_reality_csv(folder, views, yaw="heading", **k):
+def write_reality_csv(folder, views, yaw="heading", focal_px=None, **k):
     keys = ["k1", "k2", "k3", "k4", "t1", "t2"]
     rows = [f"#name,x,y,alt,{yaw},pitch,roll,f,px,py," + ",".join(keys)]
     for view in views:
         rows.append(",".join([view.name + ".png", *texts([
-            *view.centre, *reality_angles(view.rotation), *REALITY_LENS.values(), *(k.get(key, 0) for key in keys)])]))
+            *view.centre, *reality_angles(view.rotation), *reality_lens(focal_px, view.size).values(),
+            *(k.get(key, 0) for key in keys)])]))
     (folder / "scan.csv").write_text("\n".join(rows) + "\n")
     write_images(folder / "images", views)
     return lambda i, points: reality_pixels(
-        (points - views[i].centre) @ reality_matrix(*reality_angles(views[i].rotation)).T, views[i].size, k)
+        (points - views[i].centre) @ reality_matrix(*reality_angles(views[i].rotation)).T, views[i].size, k,
+        reality_lens(focal_px, views[i].size))
 
 
 def write_reality_opencv(folder, views, **k):
@@ -162,14 +169,15 @@ def write_reality_opencv(folder, views, **k):
     return lambda i, points: reality_pixels(views[i].camera_points(points), views[i].size, k)
 
 
-def write_reality_xmp(folder, views, model="brown3", as_elements=False, **k):
+def write_reality_xmp(folder, views, model="brown3", as_elements=False, focal_px=None, **k):
     write_images(folder / "images", views)
     for view in views:
+        lens = reality_lens(focal_px, view.size)
         lists = {"Rotation": joined(view.rotation.ravel()), "Position": joined(view.centre),
                  "DistortionCoeficients": joined([k.get(key, 0) for key in ("k1", "k2", "k3", "k4", "t1", "t2")])}
         values = {"Version": "3", "PosePrior": "initial", "Coordinates": "absolute", "DistortionModel": model,
-                  "FocalLength35mm": repr(REALITY_LENS["f"]), "Skew": "0", "AspectRatio": "1",
-                  "PrincipalPointU": repr(REALITY_LENS["px"]), "PrincipalPointV": repr(REALITY_LENS["py"]),
+                  "FocalLength35mm": repr(lens["f"]), "Skew": "0", "AspectRatio": "1",
+                  "PrincipalPointU": repr(lens["px"]), "PrincipalPointV": repr(lens["py"]),
                   "CalibrationPrior": "initial", "InTexturing": "1"}
         if as_elements:
             lists.update(values)
@@ -184,7 +192,8 @@ def write_reality_xmp(folder, views, model="brown3", as_elements=False, **k):
   </rdf:RDF>
 </x:xmpmeta>
 """)
-    return lambda i, points: reality_pixels(views[i].camera_points(points), views[i].size, k)
+    return lambda i, points: reality_pixels(views[i].camera_points(points), views[i].size, k,
+                                            reality_lens(focal_px, views[i].size))
 
 
 # Record3D: its page "Record3D .r3d file format", and ARKit: ARCamera.transform, ARCamera.intrinsics

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr size_t kLookedAtBytes = size_t{1} << 20;
-constexpr size_t kMostEntries = size_t{1} << 20;
+constexpr size_t kMostEntries = size_t{1} << 17;
 constexpr size_t kMostPartsLookedAt = 16;
 
 bool Fits(std::string_view pattern, const std::string& name) {
@@ -56,45 +56,53 @@ class FilesByPattern {
   // Returns the files that fit, sorted.
   std::vector<fs::path> Find(std::string_view pattern) {
     std::vector<fs::path> found = {folder_};
-    for (std::string_view rest = pattern; !rest.empty();) {
-      const std::string_view part = rest.substr(0, rest.find('/'));
-      rest.remove_prefix(std::min(rest.size(), part.size() + 1));
+    while (!pattern.empty()) {
+      const std::string_view part = pattern.substr(0, pattern.find('/'));
+      pattern.remove_prefix(std::min(pattern.size(), part.size() + 1));
       std::vector<fs::path> next;
-      for (const fs::path& folder : found) Add(folder, part, &next);
+      for (const fs::path& folder : found) Add(folder, part, !pattern.empty(), &next);
       found = std::move(next);
     }
-    std::erase_if(found, [](const fs::path& file) {
-      std::error_code error;
-      return !fs::is_regular_file(file, error);
-    });
     return found;
   }
 
  private:
-  void Add(const fs::path& folder, std::string_view part, std::vector<fs::path>* found) {
+  struct Names {
+    std::vector<std::string> files, folders;
+  };
+
+  // Adds the files of a folder that fit a part of a pattern, or the folders in it.
+  void Add(const fs::path& folder, std::string_view part, bool is_folder,
+           std::vector<fs::path>* found) {
     if (!IsPattern(part)) {
+      const fs::path path = folder / part;
       std::error_code error;
-      if (fs::exists(folder / part, error)) found->push_back(folder / part);
+      if (is_folder ? fs::is_directory(path, error) : fs::is_regular_file(path, error))
+        found->push_back(path);
       return;
     }
-    for (const std::string& name : NamesIn(folder))
+    const Names& names = NamesIn(folder);
+    for (const std::string& name : is_folder ? names.folders : names.files)
       if (Fits(part, name)) found->push_back(folder / name);
   }
 
-  const std::vector<std::string>& NamesIn(const fs::path& folder) {
+  const Names& NamesIn(const fs::path& folder) {
     const auto [entry, is_new] = names_.try_emplace(folder.string());
-    if (!is_new) return entry->second;
-    std::error_code error;
+    Names& names = entry->second;
+    if (!is_new) return names;
+    std::error_code error, ignored;
     for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-      if (entry->second.size() == kMostEntries) break;
-      entry->second.push_back(it->path().filename().string());
+      if (names.files.size() + names.folders.size() == kMostEntries) break;
+      std::vector<std::string>& kind = it->is_directory(ignored) ? names.folders : names.files;
+      kind.push_back(it->path().filename().string());
     }
-    std::sort(entry->second.begin(), entry->second.end());
-    return entry->second;
+    std::sort(names.files.begin(), names.files.end());
+    std::sort(names.folders.begin(), names.folders.end());
+    return names;
   }
 
   fs::path folder_;
-  std::map<std::string, std::vector<std::string>> names_;
+  std::map<std::string, Names> names_;
 };
 
 // Returns the files of a form: those of the first pattern that fits.
@@ -172,13 +180,15 @@ std::optional<Result<LightField>> OpenExportIn(const fs::path& folder,
   return found[0].form->read(files[0], options);
 }
 
-std::string AdviceOnExportsIn(const fs::path& folder) {
+ExportAdvice AdviceOnExportsIn(const fs::path& folder) {
   constexpr size_t kMostNamed = 3;
-  std::string advice;
+  ExportAdvice advice;
   const std::vector<FoundExport> found = ExportsIn(folder, /*reads=*/false);
-  for (size_t i = 0; i < std::min(found.size(), kMostNamed); ++i)
-    advice += fmt::format("; {} is {}: {}", found[i].files[0].string(), found[i].form->name,
-                          found[i].form->advice);
+  for (size_t i = 0; i < std::min(found.size(), kMostNamed); ++i) {
+    advice.text += fmt::format("; {} is {}: {}", found[i].files[0].string(), found[i].form->name,
+                               found[i].form->advice);
+    advice.has_poses = advice.has_poses || found[i].form->has_poses;
+  }
   return advice;
 }
 

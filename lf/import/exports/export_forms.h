@@ -40,6 +40,9 @@ struct ExportForm {
   // Reads the light field to which a file belongs. nullptr: the form is not read.
   Result<LightField> (*read)(const std::filesystem::path& file,
                              const ExportOptions& options) = nullptr;
+  // For forms that are not read: true if their program has the poses, so that they need not be
+  // reconstructed.
+  bool has_poses = false;
   // The way to a form that is read, as the end of a message: "export ... by the menu ...". Empty
   // for forms that are read.
   std::string_view advice = {};
@@ -57,8 +60,8 @@ std::span<const ExportForm> ExportForms();
 // Returns the form of a file that is given itself; nullptr if no row fits.
 const ExportForm* ExportFormOf(const std::filesystem::path& file);
 
-// Returns what a folder holds, in the order of the table. Its files may be damaged. At most 2^20
-// names of a folder are looked at.
+// Returns what a folder holds, in the order of the table. Its files may be damaged. At most 2^17
+// names of a folder are compared with patterns.
 //   reads  true: only forms that are read; false: only forms that are not
 std::vector<FoundExport> ExportsIn(const std::filesystem::path& folder, bool reads);
 
@@ -75,9 +78,13 @@ std::optional<Result<LightField>> OpenExportFile(const std::filesystem::path& fi
 std::optional<Result<LightField>> OpenExportIn(const std::filesystem::path& folder,
                                                const ExportOptions& options);
 
-// Returns advice on what a folder holds that is not read, as the end of a message: "; FILE is a
-// project of Metashape, which ...: open it ...". At most three forms are named. "" if there is
-// none.
-std::string AdviceOnExportsIn(const std::filesystem::path& folder);
+// Advice on what a folder holds that is not read.
+struct ExportAdvice {
+  // The end of a message, "; FILE is a project of Metashape, which ...: open it ...". At most three
+  // forms are named. "" if there is none.
+  std::string text;
+  bool has_poses = false;  // true if one of these forms has poses (ExportForm::has_poses)
+};
+ExportAdvice AdviceOnExportsIn(const std::filesystem::path& folder);
 
 }  // namespace lf

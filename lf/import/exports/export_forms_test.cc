@@ -40,7 +40,7 @@ TEST_F(ExportFolder, HoldsFilesThatAreRecognisedByNameAndWords) {
   ASSERT_TRUE(opened.has_value());
   ASSERT_FALSE(*opened);
   const std::string& message = opened->error().message;
-  EXPECT_NE(message.find("Photo.LFP: is not a light field, but a photograph of a Lytro camera"),
+  EXPECT_NE(message.find("Photo.LFP: is not a light field, but a raw photograph of a Lytro camera"),
             std::string::npos);
   EXPECT_NE(message.find("plenopticam"), std::string::npos) << message;
   EXPECT_NE(message.find("LFToolbox"), std::string::npos) << message;
@@ -59,9 +59,10 @@ TEST_F(ExportFolder, HoldsFilesThatAreFoundByThePatternsOfTheirPaths) {
   const std::vector<FoundExport> found = ExportsIn(folder_, false);
   ASSERT_EQ(found.size(), 3u);
   EXPECT_EQ(found[0].files, (std::vector<fs::path>{folder_ / "scan.psx"}));
-  const std::string advice = AdviceOnExportsIn(folder_);
-  EXPECT_TRUE(advice.starts_with("; " + (folder_ / "scan.psx").string() + " is a project of "))
-      << advice;
+  const ExportAdvice advice = AdviceOnExportsIn(folder_);
+  EXPECT_TRUE(advice.has_poses);
+  EXPECT_TRUE(advice.text.starts_with("; " + (folder_ / "scan.psx").string() + " is a project of "))
+      << advice.text;
   EXPECT_EQ(found[1].files[0].filename(), "sfm.abc");
   EXPECT_EQ(found[2].files, (std::vector<fs::path>{folder_ / "a.ply", folder_ / "b.ply"}));
 }

@@ -178,56 +178,71 @@ void AddFormsThatAreNotRead(std::vector<ExportForm>* forms) {
   forms->push_back({
       .name = "a recording of Record3D, which is an archive that is not looked into",
       .places = {"*.r3d"},
+      .has_poses = true,
       .advice = "unpack it like a zip file, and give the folder with the file metadata",
   });
   forms->push_back({
       .name = "a photograph of a Lytro camera, which is decoded by other programs",
-      .places = {"*.lfr", "*.lfp"},
+      .places = {"*.lfr"},
+      .has_poses = true,
+      .advice = "decode it by plenopticam, or by LFToolbox for Matlab, and give the folder of the "
+                "views that they write",
+  });
+  // Packages of lfpreprocessor have names of this kind.
+  forms->push_back({
+      .name = "a raw photograph of a Lytro camera, which is decoded by other programs",
+      .places = {"*.lfp"},
       .words = {"\x89LFP\r\n\x1A\n"},
+      .has_poses = true,
       .advice = "decode it by plenopticam, or by LFToolbox for Matlab, and give the folder of the "
                 "views that they write",
   });
   forms->push_back({
       .name = "a project of Metashape, which is read only by Metashape itself",
       .places = {"*.psx", "*.psz"},
+      .has_poses = true,
       .advice = "open it in Metashape and save the cameras by File > Export > Export Cameras as "
                 "Agisoft XML, or as Bundler",
   });
   forms->push_back({
       .name = "a project of RealityCapture or RealityScan, which is read only by these programs",
       .places = {"*.rcproj", "*.rsproj"},
+      .has_poses = true,
       .advice = "open it there, and save the cameras by Alignment > Export > Registration as "
                 "Bundler, COLMAP, or internal and external camera parameters (CSV or XMP)",
   });
   forms->push_back({
       .name = "a project of Meshroom, which leads to the cameras but does not hold them",
       .places = {"*.mg"},
-      .words = {"StructureFromMotion"},
+      .has_poses = true,
       .advice = "compute its StructureFromMotion node, and give the cameras.sfm in "
                 "MeshroomCache/StructureFromMotion",
   });
   forms->push_back({
       .name = "a scene of AliceVision in Alembic's form, which is not read",
       .places = {"*.abc", "MeshroomCache/StructureFromMotion/*/sfm.abc"},
+      .has_poses = true,
       .advice = "convert it by Meshroom's node ConvertSfMFormat to sfm, or give the cameras.sfm "
                 "beside it",
   });
   forms->push_back({
       .name = "a scene of OpenMVG in its binary form, which is not read",
       .places = {"sfm_data.bin", "reconstruction/sfm_data.bin", "*/sfm_data.bin"},
+      .has_poses = true,
       .advice = "convert it: openMVG_main_ConvertSfM_DataFormat -i sfm_data.bin -o sfm_data.json "
                 "-V -I -E",
   });
   forms->push_back({
       .name = "a database of COLMAP, which holds features but no poses",
       .places = {"database.db"},
-      .words = {"SQLite format 3", "two_view_geometries"},
+      .has_poses = true,
       .advice = "let COLMAP reconstruct the poses from it (colmap mapper), and give the folder of "
                 "sparse/0 and images",
   });
   forms->push_back({
       .name = "a scene of Blender, which is read only by Blender itself",
       .places = {"*.blend"},
+      .has_poses = true,
       .advice = "let the add-on of lfrendertools photograph it (doc/blender.md)",
   });
   forms->push_back({
@@ -238,7 +253,6 @@ void AddFormsThatAreNotRead(std::vector<ExportForm>* forms) {
   forms->push_back({
       .name = "an array of Matlab, which is not read",
       .places = {"*.mat"},
-      .words = {"MATLAB"},
       .advice = "write its views as image files by imwrite, with the names NAME_ROW_COL.png, and "
                 "give their folder",
   });

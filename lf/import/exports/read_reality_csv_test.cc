@@ -94,9 +94,9 @@ TEST(RealityRotation, AgreesWithTheMatrixThatRealityCaptureWroteIntoAnXmpFile) {
 }
 
 TEST(RealityCsv, OnlyTheFirstHeaderIsNoImage) {
-  const LightField light_field = OpenedCsv(
-      "#cameras 2\n" + kCsvHeader + "#remark,1\n" + "name_1.jpg,0,0,0,0,0,0,27,0,0,0,0,0,0,0,0\n" +
-      "name,1,0,0,0,0,0,27,0,0,0,0,0,0,0,0\n");
+  const LightField light_field = OpenedCsv("#cameras 2\n" + kCsvHeader + "#remark,1\n" +
+                                           "name_1.jpg,0,0,0,0,0,0,27,0,0,0,0,0,0,0,0\n" +
+                                           "name,1,0,0,0,0,0,27,0,0,0,0,0,0,0,0\n");
   EXPECT_EQ(light_field.image_names, (std::vector<std::string>{"name_1.jpg", "name"}));
 }
 

@@ -387,23 +387,21 @@ bool HoldsGrid(const fs::path& folder) {
          FindStanfordNames(folder / kImagesName) == StanfordNames::kGrid;
 }
 
-Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& options) {
+// Tells if a folder also holds an export of another program, besides a calibration that was read
+// and was not made from it.
+void LogUnreadExport(const fs::path& path) {
+  const std::vector<FoundExport> exports = ExportsIn(path, /*reads=*/true);
+  if (exports.empty() || HoldsOwnAndItsSource(path)) return;
+  LogInfo("{} is {}, too, and is not read: give its path to read it instead",
+          exports[0].files[0].string(), exports[0].form->name);
+}
+
+// Opens the calibration of a folder, unless it holds none but exports of other programs.
+//   series  gets a hint about the names of the images, if they are numbered
+std::optional<Result<LightField>> OpenOwnForm(const fs::path& path, const OpenOptions& options,
+                                              std::string* series) {
   std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::none)
-    return InputError(fmt::format("{}: cannot be read: {}", path.string(), error.message()));
-  if (!fs::exists(status))
-    return InputError(fmt::format("{}: no such file or folder", path.string()));
-  if (!fs::is_directory(status)) {
-    if (std::optional<Result<LightField>> opened = OpenFile(path, options)) return *opened;
-    return InputError(
-        fmt::format("{}: is not a light field: expected a transforms.json, a NAME_par.txt "
-                    "(Middlebury), a poses_bounds.npy (LLFF), a parameters.cfg (4D Light Field "
-                    "Benchmark), a poses.json (AOS), a packed store "
-                    "(STORE.lfs) or the folder of one, the folder of a COLMAP model, a folder "
-                    "of images, or an export of another program ({})",
-                    path.string(), ListOfExportForms()));
-  }
+  const auto has_export = [&] { return !ExportsIn(path, /*reads=*/true).empty(); };
   // Options that only names need ask for the names.
   const bool passes_over =
       (options.passes_over_own || !StanfordOptionOf(options).empty()) && HoldsOwnAndItsSource(path);
@@ -417,26 +415,27 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
     if (model && *model) return OpenColmap(**model, options);
     if (!model) broken_model = model.error();
   }
-  LF_ASSIGN_OR_RETURN(const std::optional<fs::path> calibration,
-                      passes_over ? OtherCalibrationIn(path) : CalibrationIn(path));
-  if (broken_model && !calibration) return *broken_model;
+  const Result<std::optional<fs::path>> calibration =
+      passes_over ? OtherCalibrationIn(path) : CalibrationIn(path);
+  if (!calibration) return calibration.error();
+  if (broken_model && !*calibration && !has_export()) return *broken_model;
   if (broken_model)
-    LogWarning("{}; {} is read instead", broken_model->message, calibration->string());
-  if (calibration) return *OpenFile(*calibration, options);
+    LogWarning("{}; {} is read instead", broken_model->message,
+               *calibration ? (*calibration)->string() : "an export of another program");
+  if (*calibration) return *OpenFile(**calibration, options);
+  if (broken_model) return std::nullopt;
   if (const std::vector<fs::path> splits = SplitsIn(path); !splits.empty())
     return OpenSplits(splits, options);
-  std::string series;
   for (const fs::path& folder : {path, path / kImagesName}) {
     const StanfordNames names = FindStanfordNames(folder);
     if (names == StanfordNames::kGrid || (names == StanfordNames::kSeries && options.pitch_w)) {
       Result<LightField> opened = OpenStanford(folder, options, path);
-      if (opened || !StanfordOptionOf(options).empty() || ExportsIn(path, /*reads=*/true).empty())
-        return opened;
+      if (opened || !StanfordOptionOf(options).empty() || !has_export()) return opened;
       LogInfo("{}: the names of the images do not state the whole calibration", folder.string());
-      return OpenFirstExport(path, options);
+      return std::nullopt;
     }
     if (names == StanfordNames::kSeries)
-      series = fmt::format(
+      *series = fmt::format(
           "; the names in {} end in two numbers, but not in those of a grid of cameras: if they "
           "are rows and columns, give their distance to lfimport ({{pitch}})",
           folder.string());
@@ -447,10 +446,22 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
     return InputError(fmt::format(
         "{}: holds several packed stores, such as {} and {}: give the path of one of them",
         path.string(), stores[0].filename().string(), stores[1].filename().string()));
+  return std::nullopt;
+}
+
+Result<LightField> OpenFolder(const fs::path& path, const OpenOptions& options) {
+  std::string series;
+  if (std::optional<Result<LightField>> own = OpenOwnForm(path, options, &series)) {
+    if (*own) LogUnreadExport(path);
+    return *std::move(own);
+  }
   if (!ExportsIn(path, /*reads=*/true).empty()) return OpenFirstExport(path, options);
   std::string hint = LightFieldsBelow(path);
-  if (hint.empty()) hint = AdviceOnExportsIn(path);
-  if (hint.empty()) hint = PhotographsIn(path) + series;
+  if (hint.empty()) {
+    const ExportAdvice advice = AdviceOnExportsIn(path);
+    // Nobody is told to reconstruct poses that are there.
+    hint = advice.text + (advice.has_poses ? "" : PhotographsIn(path) + series);
+  }
   return InputError(fmt::format(
       "{}: holds no light field: looked for {}, a COLMAP model in it or in sparse/0, NAME_par.txt, "
       "{}, {}, {} (AOS), one packed store NAME.lfs, for images named "
@@ -458,6 +469,24 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
       "of other programs ({}){}{}",
       path.string(), kCalibrationName, kLlffName, kHciName, kAosName, kImagesName,
       ListOfExportForms(), OtherCalibrations(path), hint));
+}
+
+Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& options) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::none)
+    return InputError(fmt::format("{}: cannot be read: {}", path.string(), error.message()));
+  if (!fs::exists(status))
+    return InputError(fmt::format("{}: no such file or folder", path.string()));
+  if (fs::is_directory(status)) return OpenFolder(path, options);
+  if (std::optional<Result<LightField>> opened = OpenFile(path, options)) return *opened;
+  return InputError(
+      fmt::format("{}: is not a light field: expected a transforms.json, a NAME_par.txt "
+                  "(Middlebury), a poses_bounds.npy (LLFF), a parameters.cfg (4D Light Field "
+                  "Benchmark), a poses.json (AOS), a packed store "
+                  "(STORE.lfs) or the folder of one, the folder of a COLMAP model, a folder "
+                  "of images, or an export of another program ({})",
+                  path.string(), ListOfExportForms()));
 }
 
 // Warns if none of the image files is there, and the folder also holds a COLMAP model or another

@@ -200,6 +200,16 @@ TEST_F(OpenLightFieldTest, TakesExportsOfOtherProgramsAfterItsOwnForms) {
   EXPECT_NE(own->intrinsics[0].width_px, 10);
 }
 
+TEST_F(OpenLightFieldTest, TakesAnExportBesideAnIncompleteModelOfColmap) {
+  fs::create_directories(folder_ / "sparse" / "0");
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "sparse" / "0" / "cameras.bin", ""));
+  EXPECT_FALSE(OpenLightField(folder_));
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "cameras.json", kSplatCameras));
+  const Result<LightField> light_field = OpenLightField(folder_);
+  ASSERT_TRUE(light_field) << light_field.error().message;
+  EXPECT_EQ(light_field->image_names, std::vector<std::string>{"a"});
+}
+
 TEST_F(OpenLightFieldTest, TakesAnExportIfNamesLackTheCalibration) {
   const Image<uint8_t> image(8, 6, 3);
   for (const char* const name : {"x_00_00.png", "x_00_01.png", "x_01_00.png", "x_01_01.png"})
@@ -225,6 +235,10 @@ TEST_F(OpenLightFieldTest, AdvisesHowToExportWhatIsNotRead) {
     const Result<LightField> light_field = OpenLightField(path);
     return light_field ? "" : light_field.error().message;
   };
+  EXPECT_NE(error(folder_).find("reconstruct the poses first"), std::string::npos);
+  // An archive of anything does not tell that the poses are there.
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "backup.zip", ""));
+  EXPECT_NE(error(folder_).find("backup.zip is an archive"), std::string::npos);
   EXPECT_NE(error(folder_).find("reconstruct the poses first"), std::string::npos);
   // The poses lie there, so that nobody is told to reconstruct them.
   ASSERT_TRUE(WriteFileAtomically(folder_ / "scan.psx", ""));
