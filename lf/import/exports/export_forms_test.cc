@@ -49,6 +49,17 @@ TEST_F(ExportFolder, HoldsFilesThatAreRecognisedByNameAndWords) {
   EXPECT_NE(ExportFormOf("project.psx"), nullptr);
 }
 
+// A camera path or a transforms.json of another name must not be taken for an export.
+TEST_F(ExportFolder, HoldsJsonThatIsNoExport) {
+  Write(folder_ / "other.json", R"({"frames": [{"file_path": "a.png", "position": [1, 2]}]})");
+  EXPECT_EQ(ExportFormOf(folder_ / "other.json"), nullptr);
+  Write(folder_ / "keyframes" / "cameras" / "1.json", R"({"t_00": 1, "t_23": 2})");
+  const ExportForm* const form = ExportFormOf(folder_ / "keyframes" / "cameras" / "1.json");
+  ASSERT_NE(form, nullptr);
+  EXPECT_NE(form->name.find("Polycam"), std::string_view::npos);
+  EXPECT_EQ(ExportsIn(folder_, false)[0].form, form);
+}
+
 TEST_F(ExportFolder, HoldsFilesThatAreFoundByThePatternsOfTheirPaths) {
   EXPECT_TRUE(ExportsIn(folder_, false).empty());
   Write(folder_ / "b.ply", "ply");

@@ -160,6 +160,22 @@ void AddFormsThatAreNotRead(std::vector<ExportForm>* forms) {
                 "-V -I -E",
   });
   forms->push_back({
+      .name = "a raw capture of Polycam without corrected poses",
+      .places = {"keyframes/cameras/*.json"},
+      .words = {"\"t_00\"", "\"t_23\""},
+      .has_parts = true,
+      .has_poses = true,
+      .advice = "let Polycam process the capture, export the raw data again, and give the folder "
+                "with keyframes/corrected_cameras",
+  });
+  forms->push_back({
+      .name = "the cameras of NeuS or IDR as an array, which is not read",
+      .places = {"cameras_sphere.npz", "cameras.npz"},
+      .has_poses = true,
+      .advice = "write a transforms.json, whose poses and intrinsics are the factors of the "
+                "matrices world_mat (OpenCV: decomposeProjectionMatrix)",
+  });
+  forms->push_back({
       .name = "a database of COLMAP, which holds features but no poses",
       .places = {"database.db"},
       .has_poses = true,
