@@ -37,11 +37,11 @@ TEST(Tum, ReadsThePoseOfTheTimeOfAnImage) {
 TEST(Tum, NamesWhatIsWrong) {
   const std::string list = "10 a.png\n";
   ExpectFault(ParseTrack(Replaced(kTum, "10.1", "9"), list), "the time 9 is not later than");
-  ExpectFault(ParseTrack(Replaced(kTum, "9 9 9", "9 nan 9"), list), "the position");
+  ExpectFault(ParseTrack(Replaced(kTum, "9 9 9", "9 nan 9"), list), "time x y z qx qy qz qw");
   ExpectFault(ParseTrack(Replaced(kTum, "0 0 0 1", "0 0 0 2"), list), "has the length 2");
-  ExpectFault(ParseTrack(Replaced(kTum, "0 0 0 1", "0"), list),
-              "the file ends before the quaternion");
-  ExpectFault(ParseTrack(kTum, "10\n"), "f/rgb.txt");
+  ExpectFault(ParseTrack(Replaced(kTum, "0 0 0 1", "0"), list), "has fewer than 8 numbers");
+  ExpectFault(ParseTrack(Replaced(kTum, "0 0 0 1", "0 0 0 1 2"), list), "has more than 8 numbers");
+  ExpectFault(ParseTrack(kTum, "10\n"), "f/rgb.txt:1: expected a time and a name");
 }
 
 using TumFolder = FolderTest;
