@@ -18,9 +18,9 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double kMostTime_s = 1e12;
+constexpr double kMostTumTime_s = 1e12;
 constexpr double kMostGap_s = 0.1;  // between two poses, for a pose between them
-constexpr size_t kLongestName = 4096;
+constexpr size_t kLongestTumName = 4096;
 constexpr double kMostDistance_s = 0.02;  // from the nearest pose
 
 struct TimedPose {
@@ -56,7 +56,7 @@ RigidTransform PoseOfTum(const TimedPose& pose) {
 }
 
 // Returns the pose at a time; none if no pose is near.
-std::optional<RigidTransform> PoseAtTime(const std::vector<TimedPose>& poses, double time_s) {
+std::optional<RigidTransform> TumPoseAt(const std::vector<TimedPose>& poses, double time_s) {
   const auto after = std::lower_bound(
       poses.begin(), poses.end(), time_s,
       [](const TimedPose& pose, double wanted_s) { return pose.time_s < wanted_s; });
@@ -91,11 +91,12 @@ Result<ExportedCameras> ParseTum(std::string_view text, const fs::path& file, st
   for (; words.Advance(); ++count) {
     if (count == kMaxImageCount)
       return words.Fault(fmt::format("names more than {} images", kMaxImageCount));
-    LF_ASSIGN_OR_RETURN(const double time_s, words.Number("the time of an image", kMostTime_s));
-    std::string name = words.line().Rest(kLongestName);
-    if (name.empty() || name.size() > kLongestName)
-      return words.Fault(fmt::format("expected a time and a name of 1 to {} bytes", kLongestName));
-    const std::optional<RigidTransform> pose = PoseAtTime(poses, time_s);
+    LF_ASSIGN_OR_RETURN(const double time_s, words.Number("the time of an image", kMostTumTime_s));
+    std::string name = words.line().Rest(kLongestTumName);
+    if (name.empty() || name.size() > kLongestTumName)
+      return words.Fault(
+          fmt::format("expected a time and a name of 1 to {} bytes", kLongestTumName));
+    const std::optional<RigidTransform> pose = TumPoseAt(poses, time_s);
     if (!pose) continue;
     ExportedImage image;
     image.name = std::move(name);
