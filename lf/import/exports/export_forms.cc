@@ -43,6 +43,7 @@ bool FitsInside(const ExportForm& form, const fs::path& file) {
   std::error_code error;
   if (!form.beside.empty() && !fs::exists(FolderAbove(file) / form.beside, error)) return false;
   if (form.words.empty()) return true;
+  if (!fs::is_regular_file(file, error)) return false;  // reading a pipe might never end
   const std::string head = HeadOf(file);
   return std::all_of(form.words.begin(), form.words.end(),
                      [&](std::string_view word) { return head.find(word) != std::string::npos; });

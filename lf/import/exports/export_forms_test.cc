@@ -12,7 +12,7 @@ namespace lf {
 namespace {
 namespace fs = std::filesystem;
 
-void Write(const fs::path& file, std::string_view text) {
+void WriteExport(const fs::path& file, std::string_view text) {
   ASSERT_TRUE(CreateFolder(file.parent_path()));
   ASSERT_TRUE(WriteFileAtomically(file, text));
 }
@@ -34,8 +34,8 @@ TEST(ExportForms, EveryRowIsReadOrAdvised) {
 using ExportFolder = FolderTest;
 
 TEST_F(ExportFolder, HoldsFilesThatAreRecognisedByNameAndWords) {
-  Write(folder_ / "Photo.LFP", "\x89LFP\r\n\x1A\n...");
-  Write(folder_ / "package.lfp", "SQLite format 3");
+  WriteExport(folder_ / "Photo.LFP", "\x89LFP\r\n\x1A\n...");
+  WriteExport(folder_ / "package.lfp", "SQLite format 3");
   const std::optional<Result<LightField>> opened = OpenExportFile(folder_ / "Photo.LFP", {});
   ASSERT_TRUE(opened.has_value());
   ASSERT_FALSE(*opened);
@@ -49,13 +49,25 @@ TEST_F(ExportFolder, HoldsFilesThatAreRecognisedByNameAndWords) {
   EXPECT_NE(ExportFormOf("project.psx"), nullptr);
 }
 
+// A camera path or a transforms.json of another name must not be taken for an export.
+TEST_F(ExportFolder, HoldsJsonThatIsNoExport) {
+  WriteExport(folder_ / "other.json",
+              R"({"frames": [{"file_path": "a.png", "position": [1, 2]}]})");
+  EXPECT_EQ(ExportFormOf(folder_ / "other.json"), nullptr);
+  WriteExport(folder_ / "keyframes" / "cameras" / "1.json", R"({"t_00": 1, "t_23": 2})");
+  const ExportForm* const form = ExportFormOf(folder_ / "keyframes" / "cameras" / "1.json");
+  ASSERT_NE(form, nullptr);
+  EXPECT_NE(form->name.find("Polycam"), std::string_view::npos);
+  EXPECT_EQ(ExportsIn(folder_, true)[0].form, form);
+}
+
 TEST_F(ExportFolder, HoldsFilesThatAreFoundByThePatternsOfTheirPaths) {
   EXPECT_TRUE(ExportsIn(folder_, false).empty());
-  Write(folder_ / "b.ply", "ply");
-  Write(folder_ / "a.ply", "ply");
-  Write(folder_ / ".hidden.ply", "ply");
-  Write(folder_ / "scan.psx", "");
-  Write(folder_ / "MeshroomCache" / "StructureFromMotion" / "0ab" / "sfm.abc", "");
+  WriteExport(folder_ / "b.ply", "ply");
+  WriteExport(folder_ / "a.ply", "ply");
+  WriteExport(folder_ / ".hidden.ply", "ply");
+  WriteExport(folder_ / "scan.psx", "");
+  WriteExport(folder_ / "MeshroomCache" / "StructureFromMotion" / "0ab" / "sfm.abc", "");
   const std::vector<FoundExport> found = ExportsIn(folder_, false);
   ASSERT_EQ(found.size(), 3u);
   EXPECT_EQ(found[0].files, (std::vector<fs::path>{folder_ / "scan.psx"}));

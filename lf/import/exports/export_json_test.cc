@@ -6,10 +6,10 @@
 namespace lf {
 namespace {
 
-const std::filesystem::path kFile = "f/a.json";
+const std::filesystem::path kJsonFile = "f/a.json";
 
-nlohmann::json Parsed(std::string_view text) {
-  const Result<nlohmann::json> json = ParseExportJson(text, kFile);
+nlohmann::json ParsedJson(std::string_view text) {
+  const Result<nlohmann::json> json = ParseExportJson(text, kJsonFile);
   EXPECT_TRUE(json);
   return json ? *json : nlohmann::json();
 }
@@ -21,8 +21,8 @@ void ExpectJsonError(const Result<T>& result, const std::string& message) {
 }
 
 TEST(ExportJson, ReadsNumbersThatAreWrittenAsTexts) {
-  const nlohmann::json json = Parsed(R"({"a": "1.5", "b": 2, "c": ["1", 2, [3, "4"]]})");
-  const JsonValue file(json, kFile);
+  const nlohmann::json json = ParsedJson(R"({"a": "1.5", "b": 2, "c": ["1", 2, [3, "4"]]})");
+  const JsonValue file(json, kJsonFile);
   EXPECT_EQ(*file.NumberAt("a", 0, 9), 1.5);
   EXPECT_EQ(*file.WholeAt("b", 0, 9), 2);
   EXPECT_EQ(*file.NumbersAt("c", 4, 9), (std::vector<double>{1, 2, 3, 4}));
@@ -32,8 +32,9 @@ TEST(ExportJson, ReadsNumbersThatAreWrittenAsTexts) {
 }
 
 TEST(ExportJson, NamesFilePlaceValueAndExpectation) {
-  const nlohmann::json json = Parsed(R"({"shots": {"b.jpg": {"rotation": "north"}}, "n": [1, 2]})");
-  const JsonValue file(json, kFile);
+  const nlohmann::json json =
+      ParsedJson(R"({"shots": {"b.jpg": {"rotation": "north"}}, "n": [1, 2]})");
+  const JsonValue file(json, kJsonFile);
   const Result<JsonValue> shot = file.At("shots")->At("b.jpg");
   ASSERT_TRUE(shot);
   ExpectJsonError(shot->NumbersAt("rotation", 3, 10),
@@ -49,19 +50,20 @@ TEST(ExportJson, NamesFilePlaceValueAndExpectation) {
 }
 
 TEST(ExportJson, ReadsNoNumberThatIsNone) {
-  const nlohmann::json json = Parsed(R"({"a": NaN, "b": "1e999", "c": true, "d": null})");
-  const JsonValue file(json, kFile);
+  const nlohmann::json json = ParsedJson(R"({"a": NaN, "b": "1e999", "c": true, "d": null})");
+  const JsonValue file(json, kJsonFile);
   EXPECT_FALSE(file.NumberAt("a", -1e9, 1e9));
   EXPECT_FALSE(file.NumberAt("b", -1e9, 1e9));
   EXPECT_FALSE(file.NumberAt("c", -1e9, 1e9));
   EXPECT_FALSE(file.Has("d"));
-  EXPECT_FALSE(ParseExportJson("{\"a\":", kFile));
-  EXPECT_FALSE(ParseExportJson("", kFile));
+  EXPECT_FALSE(ParseExportJson("{\"a\":", kJsonFile));
+  EXPECT_FALSE(ParseExportJson("", kJsonFile));
 }
 
 TEST(ExportJson, LeavesOutWhatNobodyReads) {
-  const Result<nlohmann::json> json = ParseExportJson(
-      "\xEF\xBB\xBF{\"a\": 1, \"points\": [1, 2], \"b\": [{\"points\": {}}]}", kFile, {"points"});
+  const Result<nlohmann::json> json =
+      ParseExportJson("\xEF\xBB\xBF{\"a\": 1, \"points\": [1, 2], \"b\": [{\"points\": {}}]}",
+                      kJsonFile, {"points"});
   ASSERT_TRUE(json);
   EXPECT_EQ(json->dump(), R"({"a":1,"b":[{}]})");
 }

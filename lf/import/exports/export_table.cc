@@ -233,6 +233,13 @@ void AddFormsThatAreNotRead(std::vector<ExportForm>* forms) {
                 "-V -I -E",
   });
   forms->push_back({
+      .name = "the cameras of NeuS or IDR as an array, which is not read",
+      .places = {"cameras_sphere.npz", "cameras.npz"},
+      .has_poses = true,
+      .advice = "write a transforms.json, whose poses and intrinsics are the factors of the "
+                "matrices world_mat (OpenCV: decomposeProjectionMatrix)",
+  });
+  forms->push_back({
       .name = "a database of COLMAP, which holds features but no poses",
       .places = {"database.db"},
       .has_poses = true,

@@ -29,4 +29,17 @@ Result<std::vector<double>> ExportWords::Numbers(const char* name, size_t count,
   return numbers;
 }
 
+Result<std::vector<double>> ExportWords::NumbersOfLine(const char* names, size_t count,
+                                                       double most) {
+  std::vector<double> numbers;
+  while (numbers.size() < count && !words_.AtLineEnd()) {
+    LF_ASSIGN_OR_RETURN(const double number, Number(names, most));
+    numbers.push_back(number);
+  }
+  if (numbers.size() < count || !words_.AtLineEnd())
+    return Fault(fmt::format("has {} than {} numbers: expected {}",
+                             numbers.size() < count ? "fewer" : "more", count, names));
+  return numbers;
+}
+
 }  // namespace lf

@@ -33,6 +33,8 @@ class ExportWords {
   Result<std::string> Word(const char* name);
   Result<double> Number(const char* name, double most);
   Result<std::vector<double>> Numbers(const char* name, size_t count, double most);
+  // Reads the rest of a line, which must hold `count` numbers within +-most. `names` lists them.
+  Result<std::vector<double>> NumbersOfLine(const char* names, size_t count, double most);
   // Returns kInput with the file and the line.
   Error Fault(std::string_view message) const { return words_.Fault(message); }
   // The words of the current line.

@@ -23,11 +23,12 @@ constexpr std::string_view kBundleHeader = "# Bundle file v0.3";
 
 // Returns the name in a line of a list: the whole line if it ends like an image, so that names may
 // contain blanks, and otherwise its first word, behind which a focal length may follow.
-std::string NameInLine(const std::string& line) {
+std::string NameInListLine(const std::string& line) {
   return IsImageName(line) ? line : line.substr(0, line.find_first_of(" \t"));
 }
 
-Result<std::vector<std::string>> NamesOfList(std::string_view list, const fs::path& list_file) {
+Result<std::vector<std::string>> NamesOfBundlerList(std::string_view list,
+                                                    const fs::path& list_file) {
   constexpr size_t kLongest = 4096;
   std::vector<std::string> names;
   ByteStream stream(list, list_file);
@@ -35,7 +36,7 @@ Result<std::vector<std::string>> NamesOfList(std::string_view list, const fs::pa
   while (words.NextEntry()) {
     const std::string line = words.Rest(kLongest);
     if (line.size() > kLongest) return words.Fault("is longer than 4096 bytes");
-    names.push_back(NameInLine(line));
+    names.push_back(NameInListLine(line));
     if (names.size() > kMaxImageCount)
       return words.Fault(fmt::format("names more than {} images", kMaxImageCount));
   }
@@ -67,7 +68,7 @@ Result<BundleCamera> NextBundleCamera(ExportWords* words) {
 }
 
 // Returns the list that belongs to a bundle file.
-std::optional<fs::path> ListOf(const fs::path& file) {
+std::optional<fs::path> BundlerListOf(const fs::path& file) {
   const std::string stem = file.stem().string();
   std::error_code error;
   for (const fs::path& folder : {file.parent_path(), file.parent_path() / ".."})
@@ -87,7 +88,7 @@ Result<ExportedCameras> ParseBundler(std::string_view text, const fs::path& file
         fmt::format("{}: is no bundle file of version 0.3: expected the first line "
                     "\"{}\"",
                     file.string(), kBundleHeader));
-  LF_ASSIGN_OR_RETURN(std::vector<std::string> names, NamesOfList(list, list_file));
+  LF_ASSIGN_OR_RETURN(std::vector<std::string> names, NamesOfBundlerList(list, list_file));
   ExportWords words(text, file);
   LF_ASSIGN_OR_RETURN(const std::vector<double> counts,
                       words.Numbers("the numbers of cameras and points", 2, kMostBundleNumber));
@@ -119,7 +120,7 @@ Result<ExportedCameras> ParseBundler(std::string_view text, const fs::path& file
 }
 
 Result<LightField> ReadBundler(const fs::path& file, const ExportOptions& options) {
-  const std::optional<fs::path> list_file = ListOf(file);
+  const std::optional<fs::path> list_file = BundlerListOf(file);
   if (!list_file)
     return InputError(fmt::format(
         "{}: the list of its images is missing: expected {} or list.txt beside it, with "

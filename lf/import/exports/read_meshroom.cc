@@ -16,9 +16,9 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double kMostNumber = 1e9;
+constexpr double kMostMeshroomNumber = 1e9;
 constexpr double kWholeCentre_px = 0.5;  // pixel centres of the file are at whole numbers
-constexpr const char* kNoDistortion = "none";
+constexpr const char* kNoMeshroomLens = "none";
 
 using MeshroomVersion = std::array<int, 3>;
 
@@ -31,9 +31,9 @@ Result<std::vector<JsonValue>> MeshroomList(const JsonValue& object, const char*
   return list.Entries();
 }
 
-Result<MeshroomVersion> VersionOf(const JsonValue& top) {
+Result<MeshroomVersion> MeshroomVersionOf(const JsonValue& top) {
   LF_ASSIGN_OR_RETURN(const JsonValue value, top.At("version"));
-  LF_ASSIGN_OR_RETURN(const std::vector<double> numbers, value.Numbers(3, kMostNumber));
+  LF_ASSIGN_OR_RETURN(const std::vector<double> numbers, value.Numbers(3, kMostMeshroomNumber));
   if (numbers[0] != 1)
     return value.Wrong(
         "version 1.x of AliceVision's scenes, or the scene as COLMAP (Meshroom's "
@@ -44,16 +44,17 @@ Result<MeshroomVersion> VersionOf(const JsonValue& top) {
   return version;
 }
 
-std::string LowerCase(std::string text) {
+std::string MeshroomLowerCase(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
   return text;
 }
 
 // Returns the name of the distortion, as scenes since version 1.2.8 write it.
-Result<std::string> DistortionName(const JsonValue& camera, const MeshroomVersion& version) {
+Result<std::string> MeshroomDistortionName(const JsonValue& camera,
+                                           const MeshroomVersion& version) {
   LF_ASSIGN_OR_RETURN(std::string type, camera.TextAt("type"));
-  type = LowerCase(type);
+  type = MeshroomLowerCase(type);
   const auto unsupported = [&](const std::string& model) {
     return camera.Fault(fmt::format(
         "has the lens model \"{}\", which is not supported: expected pinhole without distortion or "
@@ -62,8 +63,8 @@ Result<std::string> DistortionName(const JsonValue& camera, const MeshroomVersio
   };
   if (version < MeshroomVersion{1, 2, 8}) {
     const std::map<std::string, std::string> names = {
-        {"pinhole", kNoDistortion}, {"radial1", "radialk1"}, {"radial3", "radialk3"},
-        {"brown", "brown"},         {"fisheye4", "fisheye"}, {"fisheye1", "fisheye1"}};
+        {"pinhole", kNoMeshroomLens}, {"radial1", "radialk1"}, {"radial3", "radialk3"},
+        {"brown", "brown"},           {"fisheye4", "fisheye"}, {"fisheye1", "fisheye1"}};
     const auto found = names.find(type);
     if (found == names.end()) return unsupported(type);
     return found->second;
@@ -71,28 +72,28 @@ Result<std::string> DistortionName(const JsonValue& camera, const MeshroomVersio
   if (type != "pinhole") return unsupported(type);
   if (camera.Has("undistortionType")) {
     LF_ASSIGN_OR_RETURN(const std::string name, camera.TextAt("undistortionType"));
-    if (LowerCase(name) != kNoDistortion) return unsupported(name);
+    if (MeshroomLowerCase(name) != kNoMeshroomLens) return unsupported(name);
   }
   LF_ASSIGN_OR_RETURN(const std::string name, camera.TextAt("distortionType"));
-  const std::string known[] = {kNoDistortion, "radialk1", "radialk3", "radialk3pt",
-                               "brown",       "fisheye",  "fisheye1"};
-  if (std::find(std::begin(known), std::end(known), LowerCase(name)) == std::end(known))
+  const std::string known[] = {kNoMeshroomLens, "radialk1", "radialk3", "radialk3pt",
+                               "brown",         "fisheye",  "fisheye1"};
+  if (std::find(std::begin(known), std::end(known), MeshroomLowerCase(name)) == std::end(known))
     return unsupported(name);
-  return LowerCase(name);
+  return MeshroomLowerCase(name);
 }
 
 // Sets the distortion. The model radialk3pt is radialk3, divided by its value at r = 1, which is a
 // factor of the focal length.
 Result<void> ReadMeshroomLens(const JsonValue& camera, const MeshroomVersion& version,
                               Intrinsics* k) {
-  LF_ASSIGN_OR_RETURN(const std::string name, DistortionName(camera, version));
-  if (name == kNoDistortion) return {};
+  LF_ASSIGN_OR_RETURN(const std::string name, MeshroomDistortionName(camera, version));
+  if (name == kNoMeshroomLens) return {};
   const size_t count = name == "brown"                            ? 5
                        : name == "fisheye"                        ? 4
                        : name == "radialk1" || name == "fisheye1" ? 1
                                                                   : 3;
   LF_ASSIGN_OR_RETURN(const std::vector<double> p,
-                      camera.NumbersAt("distortionParams", count, kMostNumber));
+                      camera.NumbersAt("distortionParams", count, kMostMeshroomNumber));
   if (name == "fisheye") {
     k->distortion = {DistortionModel::kFisheye, {p[0], p[1], p[2], p[3]}};
   } else if (name == "fisheye1") {
@@ -119,21 +120,23 @@ Result<void> ReadMeshroomFocal(const JsonValue& camera, const MeshroomVersion& v
                                Intrinsics* k) {
   constexpr double kLeast = 1e-6;
   if (version < MeshroomVersion{1, 2, 0}) {
-    LF_ASSIGN_OR_RETURN(k->fx_px, camera.NumberAt("pxFocalLength", kLeast, kMostNumber));
+    LF_ASSIGN_OR_RETURN(k->fx_px, camera.NumberAt("pxFocalLength", kLeast, kMostMeshroomNumber));
     k->fy_px = k->fx_px;
     return {};
   }
   if (version < MeshroomVersion{1, 2, 2}) {
     LF_ASSIGN_OR_RETURN(const std::vector<double> focal,
-                        camera.NumbersAt("pxFocalLength", 2, kMostNumber));
+                        camera.NumbersAt("pxFocalLength", 2, kMostMeshroomNumber));
     k->fx_px = focal[0];
     k->fy_px = focal[1];
     return {};
   }
-  LF_ASSIGN_OR_RETURN(const double focal_mm, camera.NumberAt("focalLength", kLeast, kMostNumber));
+  LF_ASSIGN_OR_RETURN(const double focal_mm,
+                      camera.NumberAt("focalLength", kLeast, kMostMeshroomNumber));
   LF_ASSIGN_OR_RETURN(const double sensor_mm,
-                      camera.NumberOr("sensorWidth", 36, kLeast, kMostNumber));
-  LF_ASSIGN_OR_RETURN(const double ratio, camera.NumberOr("pixelRatio", 1, kLeast, kMostNumber));
+                      camera.NumberOr("sensorWidth", 36, kLeast, kMostMeshroomNumber));
+  LF_ASSIGN_OR_RETURN(const double ratio,
+                      camera.NumberOr("pixelRatio", 1, kLeast, kMostMeshroomNumber));
   if (version < MeshroomVersion{1, 2, 11}) {
     k->fx_px = focal_mm / sensor_mm * k->width_px;
     k->fy_px = version < MeshroomVersion{1, 2, 5} ? k->fx_px / ratio : k->fx_px * ratio;
@@ -152,7 +155,7 @@ Result<Intrinsics> MeshroomIntrinsics(const JsonValue& camera, const MeshroomVer
   LF_RETURN_IF_ERROR(ReadMeshroomFocal(camera, version, &k));
   LF_RETURN_IF_ERROR(ReadMeshroomLens(camera, version, &k));
   LF_ASSIGN_OR_RETURN(const std::vector<double> point,
-                      camera.NumbersAt("principalPoint", 2, kMostNumber));
+                      camera.NumbersAt("principalPoint", 2, kMostMeshroomNumber));
   const bool counts_from_middle = version >= MeshroomVersion{1, 2, 1};
   k.cx_px = point[0] + kWholeCentre_px + (counts_from_middle ? 0.5 * k.width_px : 0);
   k.cy_px = point[1] + kWholeCentre_px + (counts_from_middle ? 0.5 * k.height_px : 0);
@@ -176,8 +179,8 @@ struct MeshroomScene {
   std::map<std::string, Intrinsics> known;  // those that views have named
 };
 
-Result<void> IndexBy(const char* list, const char* key, const JsonValue& top,
-                     std::map<std::string, JsonValue>* index) {
+Result<void> IndexMeshroomList(const char* list, const char* key, const JsonValue& top,
+                               std::map<std::string, JsonValue>* index) {
   LF_ASSIGN_OR_RETURN(const std::vector<JsonValue> entries, MeshroomList(top, list));
   for (const JsonValue& entry : entries) {
     LF_ASSIGN_OR_RETURN(const std::string label, entry.LabelAt(key));
@@ -187,7 +190,7 @@ Result<void> IndexBy(const char* list, const char* key, const JsonValue& top,
 }
 
 // Returns the pose of a camera relative to its rig.
-Result<RigidTransform> SubPoseOf(const JsonValue& view, const MeshroomScene& scene) {
+Result<RigidTransform> MeshroomSubPose(const JsonValue& view, const MeshroomScene& scene) {
   LF_ASSIGN_OR_RETURN(const std::string rig_id, view.LabelAt("rigId"));
   const auto rig = scene.rigs.find(rig_id);
   if (rig == scene.rigs.end()) return view.At("rigId")->Wrong("the rigId of an entry of \"rigs\"");
@@ -225,7 +228,7 @@ Result<ExportedImage> MeshroomImage(const JsonValue& view, const JsonValue& pose
   LF_ASSIGN_OR_RETURN(image.cam_from_world, MeshroomPose(transform));
   LF_ASSIGN_OR_RETURN(const bool moves_with_rig, MovesWithRig(view));
   if (!moves_with_rig) return image;
-  LF_ASSIGN_OR_RETURN(const RigidTransform cam_from_rig, SubPoseOf(view, *scene));
+  LF_ASSIGN_OR_RETURN(const RigidTransform cam_from_rig, MeshroomSubPose(view, *scene));
   image.cam_from_world = cam_from_rig * image.cam_from_world;
   return image;
 }
@@ -238,10 +241,10 @@ Result<ExportedCameras> ParseMeshroom(std::string_view text, const fs::path& fil
       ParseExportJson(text, file, {"structure", "metadata", "featuresFolders", "matchesFolders"}));
   const JsonValue top(tree, file);
   MeshroomScene scene;
-  LF_ASSIGN_OR_RETURN(scene.version, VersionOf(top));
-  LF_RETURN_IF_ERROR(IndexBy("intrinsics", "intrinsicId", top, &scene.intrinsics));
-  LF_RETURN_IF_ERROR(IndexBy("poses", "poseId", top, &scene.poses));
-  LF_RETURN_IF_ERROR(IndexBy("rigs", "rigId", top, &scene.rigs));
+  LF_ASSIGN_OR_RETURN(scene.version, MeshroomVersionOf(top));
+  LF_RETURN_IF_ERROR(IndexMeshroomList("intrinsics", "intrinsicId", top, &scene.intrinsics));
+  LF_RETURN_IF_ERROR(IndexMeshroomList("poses", "poseId", top, &scene.poses));
+  LF_RETURN_IF_ERROR(IndexMeshroomList("rigs", "rigId", top, &scene.rigs));
   LF_ASSIGN_OR_RETURN(const std::vector<JsonValue> views, MeshroomList(top, "views"));
   ExportedCameras exported;
   exported.folder = file.parent_path();

@@ -19,9 +19,9 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kMostMvsnetNumber = 1e9;
-constexpr std::string_view kCameraEnding = "_cam.txt";
+constexpr std::string_view kMvsnetEnding = "_cam.txt";
 
-Result<void> ExpectWord(ExportWords* words, std::string_view expected) {
+Result<void> ExpectMvsnetWord(ExportWords* words, std::string_view expected) {
   LF_ASSIGN_OR_RETURN(const std::string word, words->Word("extrinsic and intrinsic"));
   if (word == expected) return {};
   constexpr size_t kMostShown = 40;
@@ -80,12 +80,12 @@ void EnlargeIntrinsics(const fs::path& folder, LightField* light_field) {
 Result<MvsnetCamera> ParseMvsnetCamera(std::string_view text, const fs::path& file) {
   MvsnetCamera camera;
   std::string name = file.filename().string();
-  if (name.ends_with(kCameraEnding)) name.resize(name.size() - kCameraEnding.size());
+  if (name.ends_with(kMvsnetEnding)) name.resize(name.size() - kMvsnetEnding.size());
   camera.image.name = name + ".jpg";
   ExportWords words(text, file);
-  LF_RETURN_IF_ERROR(ExpectWord(&words, "extrinsic"));
+  LF_RETURN_IF_ERROR(ExpectMvsnetWord(&words, "extrinsic"));
   LF_ASSIGN_OR_RETURN(camera.image.cam_from_world, MvsnetPose(&words));
-  LF_RETURN_IF_ERROR(ExpectWord(&words, "intrinsic"));
+  LF_RETURN_IF_ERROR(ExpectMvsnetWord(&words, "intrinsic"));
   LF_ASSIGN_OR_RETURN(camera.image.intrinsics, MvsnetIntrinsics(&words));
   std::vector<double> depths;
   while (depths.size() < 4 && words.Advance()) {
@@ -100,7 +100,7 @@ Result<MvsnetCamera> ParseMvsnetCamera(std::string_view text, const fs::path& fi
 
 Result<LightField> ReadMvsnet(const fs::path& file, const ExportOptions& options) {
   const fs::path folder = FolderAbove(fs::absolute(file)), root = FolderAbove(folder);
-  LF_ASSIGN_OR_RETURN(const std::vector<fs::path> files, SortedFilesIn(folder, kCameraEnding));
+  LF_ASSIGN_OR_RETURN(const std::vector<fs::path> files, SortedFilesIn(folder, kMvsnetEnding));
   ExportedCameras exported;
   bool has_depths = true;
   for (const fs::path& one : files) {

@@ -22,28 +22,31 @@ intrinsic
 1.5 0.5 11
 )";
 
-Result<MvsnetCamera> ParseView(const std::string& text) {
+Result<MvsnetCamera> ParseMvsnetView(const std::string& text) {
   return ParseMvsnetCamera(text, "f/cams/00000007_cam.txt");
 }
 
 TEST(Mvsnet, ReadsPoseMatrixAndDepths) {
-  const Result<MvsnetCamera> camera = ParseView(kMvsnet);
+  const Result<MvsnetCamera> camera = ParseMvsnetView(kMvsnet);
   ASSERT_TRUE(camera) << camera.error().message;
   EXPECT_EQ(camera->image.name, "00000007.jpg");
   EXPECT_EQ(camera->depth_range, (DepthRange{1.5, 6.5}));
   ExpectNear(PixelOf(camera->image, {0, 3, 5}), {50 + 100 * 0.5 + 2 * 0.5, 25 + 90 * 0.5});
-  EXPECT_EQ(ParseView(Replaced(kMvsnet, "1.5 0.5 11", "1.5 0.5 11 9"))->depth_range,
+  EXPECT_EQ(ParseMvsnetView(Replaced(kMvsnet, "1.5 0.5 11", "1.5 0.5 11 9"))->depth_range,
             (DepthRange{1.5, 9}));
-  EXPECT_FALSE(ParseView(Replaced(kMvsnet, "1.5 0.5 11", "1.5 0.5"))->depth_range);
+  EXPECT_FALSE(ParseMvsnetView(Replaced(kMvsnet, "1.5 0.5 11", "1.5 0.5"))->depth_range);
 }
 
 TEST(Mvsnet, NamesWhatIsWrong) {
-  ExpectFault(ParseView(Replaced(kMvsnet, "intrinsic", "depths")), "expected the word intrinsic");
-  ExpectFault(ParseView(Replaced(kMvsnet, "0 0 0 1", "0 0 0 2")), "expected the last row 0 0 0 1");
-  ExpectFault(ParseView(Replaced(kMvsnet, "0 1 0 -2", "0 1 0 1e300")), "is 1e+300");
-  ExpectFault(ParseView(Replaced(kMvsnet, "0 90 25", "1 90 25")), "the matrix above is no K");
-  ExpectFault(ParseView(Replaced(kMvsnet, "0 1 0 -2", "0 2 0 -2")), "sheared or scaled");
-  ExpectFault(ParseView("extrinsic\n1 0"), "the file ends before the matrix of 4 x 4 numbers");
+  ExpectFault(ParseMvsnetView(Replaced(kMvsnet, "intrinsic", "depths")),
+              "expected the word intrinsic");
+  ExpectFault(ParseMvsnetView(Replaced(kMvsnet, "0 0 0 1", "0 0 0 2")),
+              "expected the last row 0 0 0 1");
+  ExpectFault(ParseMvsnetView(Replaced(kMvsnet, "0 1 0 -2", "0 1 0 1e300")), "is 1e+300");
+  ExpectFault(ParseMvsnetView(Replaced(kMvsnet, "0 90 25", "1 90 25")), "the matrix above is no K");
+  ExpectFault(ParseMvsnetView(Replaced(kMvsnet, "0 1 0 -2", "0 2 0 -2")), "sheared or scaled");
+  ExpectFault(ParseMvsnetView("extrinsic\n1 0"),
+              "the file ends before the matrix of 4 x 4 numbers");
 }
 
 using MvsnetFolder = FolderTest;

@@ -13,12 +13,12 @@ const std::string kNerfies = R"({"orientation": [[0, 1, 0], [-1, 0, 0], [0, 0, 1
   "pixel_aspect_ratio": 0.9, "radial_distortion": [0.1, 0, 0], "tangential": [0, 0],
   "image_size": [400, 200]})";
 
-Result<ExportedImage> ParseCamera(const std::string& text) {
+Result<ExportedImage> ParseNerfiesView(const std::string& text) {
   return ParseNerfiesCamera(text, "f/camera/a.json");
 }
 
 TEST(Nerfies, TurnsFromWorldToCamera) {
-  const Result<ExportedImage> image = ParseCamera(kNerfies);
+  const Result<ExportedImage> image = ParseNerfiesView(kNerfies);
   ASSERT_TRUE(image) << image.error().message;
   EXPECT_EQ(image->name, "a.png");
   EXPECT_EQ(image->intrinsics.fy_px, 90);
@@ -26,11 +26,13 @@ TEST(Nerfies, TurnsFromWorldToCamera) {
 }
 
 TEST(Nerfies, NamesWhatIsWrong) {
-  ExpectFault(ParseCamera(Replaced(kNerfies, "[400, 200]", "[400]")), "image_size is [400]");
-  ExpectFault(ParseCamera(Replaced(kNerfies, "100", "0")), "focal_length is 0");
-  ExpectFault(ParseCamera(Replaced(kNerfies, "[0, 1, 0]", "[0, 1]")), "orientation is [[0,1],");
-  ExpectFault(ParseCamera(Replaced(kNerfies, "[1, 2, 3]", "[1, 2, Infinity]")), "position is [1,2");
-  ExpectFault(ParseCamera("[]"), "expected an object with the key");
+  ExpectFault(ParseNerfiesView(Replaced(kNerfies, "[400, 200]", "[400]")), "image_size is [400]");
+  ExpectFault(ParseNerfiesView(Replaced(kNerfies, "100", "0")), "focal_length is 0");
+  ExpectFault(ParseNerfiesView(Replaced(kNerfies, "[0, 1, 0]", "[0, 1]")),
+              "orientation is [[0,1],");
+  ExpectFault(ParseNerfiesView(Replaced(kNerfies, "[1, 2, 3]", "[1, 2, Infinity]")),
+              "position is [1,2");
+  ExpectFault(ParseNerfiesView("[]"), "expected an object with the key");
 }
 
 using NerfiesFolder = FolderTest;

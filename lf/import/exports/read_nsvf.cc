@@ -22,7 +22,7 @@ constexpr double kMostNsvfNumber = 1e9;
 constexpr double kNsvfCentre_px = 0.5;  // pixel centres of the file are at whole numbers
 
 // Reads all numbers of the text, of which there are at most 16.
-Result<std::vector<double>> NumbersOfText(ExportWords* words, double most) {
+Result<std::vector<double>> NsvfNumbers(ExportWords* words, double most) {
   std::vector<double> numbers;
   while (words->Advance()) {
     if (numbers.size() == 16) return words->Fault("has more than 16 numbers");
@@ -33,7 +33,7 @@ Result<std::vector<double>> NumbersOfText(ExportWords* words, double most) {
 }
 
 // Reads the numbers of the first line with any, of which there are at most 16.
-Result<std::vector<double>> NumbersOfLine(ExportWords* words) {
+Result<std::vector<double>> NsvfFirstLine(ExportWords* words) {
   std::vector<double> numbers;
   if (!words->Advance()) return numbers;
   while (!words->line().AtLineEnd() && numbers.size() < 17) {
@@ -77,7 +77,7 @@ Result<std::optional<DepthRange>> NsvfDepths(const fs::path& file) {
 
 Result<RigidTransform> ParseNsvfPose(std::string_view text, const fs::path& file) {
   ExportWords words(text, file);
-  LF_ASSIGN_OR_RETURN(const std::vector<double> m, NumbersOfText(&words, kLargest_w));
+  LF_ASSIGN_OR_RETURN(const std::vector<double> m, NsvfNumbers(&words, kLargest_w));
   if (m.size() != 16 || m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1)
     return words.Fault(
         fmt::format("has {} numbers: expected a matrix of 4 x 4 numbers whose last "
@@ -91,7 +91,7 @@ Result<RigidTransform> ParseNsvfPose(std::string_view text, const fs::path& file
 
 Result<Intrinsics> ParseNsvfIntrinsics(std::string_view text, const fs::path& file) {
   ExportWords first_words(text, file);
-  LF_ASSIGN_OR_RETURN(const std::vector<double> first, NumbersOfLine(&first_words));
+  LF_ASSIGN_OR_RETURN(const std::vector<double> first, NsvfFirstLine(&first_words));
   ExportWords words(text, file);
   Intrinsics k;
   // The first line of a matrix is "f 0 cx 0" or "f 0 cx"; that of the other form, "f cx cy 0".
@@ -101,7 +101,7 @@ Result<Intrinsics> ParseNsvfIntrinsics(std::string_view text, const fs::path& fi
     k.cy_px = first[2] + kNsvfCentre_px;
     return k;
   }
-  LF_ASSIGN_OR_RETURN(const std::vector<double> m, NumbersOfText(&words, kMostNsvfNumber));
+  LF_ASSIGN_OR_RETURN(const std::vector<double> m, NsvfNumbers(&words, kMostNsvfNumber));
   const size_t columns = m.size() == 16 ? 4 : 3;
   if (m.size() != columns * columns)
     return words.Fault(fmt::format(

@@ -14,10 +14,10 @@ a"b.jpg	100 0.70710678118654757 0 0 -0.70710678118654757 1 2 3 0 0
 0
 )";
 
-Result<ExportedCameras> ParseModel(const std::string& text) { return ParseNvm(text, "f/a.nvm"); }
+Result<ExportedCameras> ParseNvmModel(const std::string& text) { return ParseNvm(text, "f/a.nvm"); }
 
 TEST(Nvm, ReadsCentreAndQuaternion) {
-  const Result<ExportedCameras> cameras = ParseModel(kNvm);
+  const Result<ExportedCameras> cameras = ParseNvmModel(kNvm);
   ASSERT_TRUE(cameras) << cameras.error().message;
   ASSERT_EQ(cameras->images.size(), 1u);
   EXPECT_EQ(cameras->images[0].name, "a b.jpg");
@@ -38,14 +38,14 @@ TEST(Nvm, InvertsTheDistortion) {
 }
 
 TEST(Nvm, NamesWhatIsWrong) {
-  ExpectFault(ParseModel(Replaced(kNvm, "NVM_V3", "NVM_V2")),
+  ExpectFault(ParseNvmModel(Replaced(kNvm, "NVM_V3", "NVM_V2")),
               "\"NVM_V2\": expected the first word");
-  ExpectFault(ParseModel(Replaced(kNvm, "NVM_V3", "NVM_V3 Free")), "\"Free\": expected FixedK");
-  ExpectFault(ParseModel(Replaced(kNvm, "1\na", "0\na")), "the number of cameras is 0");
-  ExpectFault(ParseModel(Replaced(kNvm, "0.70710678118654757", "0.9")), "has the length");
-  ExpectFault(ParseModel(Replaced(kNvm, "1 2 3", "1 inf 3")), "the position");
-  ExpectFault(ParseModel("NVM_V3\n\n2\na.jpg 100"), "the file ends before the rotation");
-  ExpectFault(ParseModel(""), "the file ends before NVM_V3");
+  ExpectFault(ParseNvmModel(Replaced(kNvm, "NVM_V3", "NVM_V3 Free")), "\"Free\": expected FixedK");
+  ExpectFault(ParseNvmModel(Replaced(kNvm, "1\na", "0\na")), "the number of cameras is 0");
+  ExpectFault(ParseNvmModel(Replaced(kNvm, "0.70710678118654757", "0.9")), "has the length");
+  ExpectFault(ParseNvmModel(Replaced(kNvm, "1 2 3", "1 inf 3")), "the position");
+  ExpectFault(ParseNvmModel("NVM_V3\n\n2\na.jpg 100"), "the file ends before the rotation");
+  ExpectFault(ParseNvmModel(""), "the file ends before NVM_V3");
 }
 
 }  // namespace

@@ -144,7 +144,8 @@ Result<ExportedCameras> ParseOpenMvg(std::string_view text, const fs::path& file
         const auto k = intrinsics.find(camera);
         const auto cam_from_world = poses.find(pose);
         if (k == intrinsics.end() || cam_from_world == poses.end()) return {};
-        exported.images.push_back({folder + name, k->second, cam_from_world->second});
+        exported.images.push_back(
+            {(fs::path(folder) / name).string(), k->second, cam_from_world->second});
         return {};
       }));
   LogPosedCount(file, exported.images.size(), view_count);

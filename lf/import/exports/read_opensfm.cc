@@ -16,11 +16,11 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double kMostParameter = 1e9;
+constexpr double kMostOpenSfmNumber = 1e9;
 
 // The value of a parameter of a camera; 0 if it is not stated.
-Result<double> ParameterOf(const JsonValue& camera, const char* key) {
-  return camera.NumberOr(key, 0, -kMostParameter, kMostParameter);
+Result<double> OpenSfmNumber(const JsonValue& camera, const char* key) {
+  return camera.NumberOr(key, 0, -kMostOpenSfmNumber, kMostOpenSfmNumber);
 }
 
 // Reads parameters by their keys, in the order of the distortion model.
@@ -29,7 +29,7 @@ Result<Distortion> OpenSfmDistortion(const JsonValue& camera, DistortionModel mo
   DistortionParameters parameters = {};
   size_t i = 0;
   for (const char* const key : keys) {
-    LF_ASSIGN_OR_RETURN(parameters[i], ParameterOf(camera, key));
+    LF_ASSIGN_OR_RETURN(parameters[i], OpenSfmNumber(camera, key));
     ++i;
   }
   return DistortionOf(model, parameters);

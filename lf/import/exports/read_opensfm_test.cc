@@ -14,12 +14,12 @@ const std::string kOpenSfm = R"([{
                       "camera": "cam"}},
   "points": {"1": {"coordinates": [0, 0, 0]}}}])";
 
-Result<ExportedCameras> Parse(const std::string& text) {
+Result<ExportedCameras> ParseReconstruction(const std::string& text) {
   return ParseOpenSfm(text, "f/reconstruction.json");
 }
 
 TEST(OpenSfm, ScalesByTheLongerSide) {
-  const Result<ExportedCameras> cameras = Parse(kOpenSfm);
+  const Result<ExportedCameras> cameras = ParseReconstruction(kOpenSfm);
   ASSERT_TRUE(cameras) << cameras.error().message;
   ASSERT_EQ(cameras->images.size(), 1u);
   const ExportedImage& image = cameras->images[0];
@@ -31,26 +31,29 @@ TEST(OpenSfm, ScalesByTheLongerSide) {
 
 TEST(OpenSfm, TakesTheLargestReconstruction) {
   const std::string two = Replaced(kOpenSfm, "[{", R"([{"cameras": {}, "shots": {}}, {)");
-  const Result<ExportedCameras> cameras = Parse(two);
+  const Result<ExportedCameras> cameras = ParseReconstruction(two);
   ASSERT_TRUE(cameras) << cameras.error().message;
   EXPECT_EQ(cameras->images.size(), 1u);
 }
 
 TEST(OpenSfm, NamesWhatIsWrong) {
-  ExpectFault(Parse("[]"), "is an empty list");
-  ExpectFault(Parse("{}"), "expected a list");
-  ExpectFault(Parse("[{\"cameras\": {}}]"), "[0] has no key \"shots\"");
-  ExpectFault(Parse(Replaced(kOpenSfm, "\"perspective\"", "\"spherical\"")),
+  ExpectFault(ParseReconstruction("[]"), "is an empty list");
+  ExpectFault(ParseReconstruction("{}"), "expected a list");
+  ExpectFault(ParseReconstruction("[{\"cameras\": {}}]"), "[0] has no key \"shots\"");
+  ExpectFault(ParseReconstruction(Replaced(kOpenSfm, "\"perspective\"", "\"spherical\"")),
               "[0].cameras.cam has the lens model \"spherical\", which is not supported");
-  ExpectFault(Parse(Replaced(kOpenSfm, "\"perspective\"", "\"dual\"")),
+  ExpectFault(ParseReconstruction(Replaced(kOpenSfm, "\"perspective\"", "\"dual\"")),
               "has the lens model \"dual\", which is not supported");
-  ExpectFault(Parse(Replaced(kOpenSfm, "0.5", "-1")),
+  ExpectFault(ParseReconstruction(Replaced(kOpenSfm, "0.5", "-1")),
               "[0].cameras.cam.focal is -1: expected a number from 1e-06 to 1e+06");
-  ExpectFault(Parse(Replaced(kOpenSfm, "0.5", "NaN")), "cam.focal is \"NaN\"");
-  ExpectFault(Parse(Replaced(kOpenSfm, "\"width\": 400,", "")), "has no key \"width\"");
-  ExpectFault(Parse(Replaced(kOpenSfm, "[1, 2, 3]", "[1e300, 2, 3]")), "translation is [1e+300,2");
-  ExpectFault(Parse(Replaced(kOpenSfm, "\"camera\": \"cam\"", "\"camera\": \"other\"")),
-              "a.jpg.camera is \"other\": expected a key of \"cameras\"");
+  ExpectFault(ParseReconstruction(Replaced(kOpenSfm, "0.5", "NaN")), "cam.focal is \"NaN\"");
+  ExpectFault(ParseReconstruction(Replaced(kOpenSfm, "\"width\": 400,", "")),
+              "has no key \"width\"");
+  ExpectFault(ParseReconstruction(Replaced(kOpenSfm, "[1, 2, 3]", "[1e300, 2, 3]")),
+              "translation is [1e+300,2");
+  ExpectFault(
+      ParseReconstruction(Replaced(kOpenSfm, "\"camera\": \"cam\"", "\"camera\": \"other\"")),
+      "a.jpg.camera is \"other\": expected a key of \"cameras\"");
 }
 
 }  // namespace

@@ -18,8 +18,9 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double kMostTime_s = 1e12;
-constexpr double kMostGap_s = 0.1;        // between two poses, for a pose between them
+constexpr double kMostTumTime_s = 1e12;
+constexpr double kMostGap_s = 0.1;  // between two poses, for a pose between them
+constexpr size_t kLongestTumName = 4096;
 constexpr double kMostDistance_s = 0.02;  // from the nearest pose
 
 struct TimedPose {
@@ -34,15 +35,12 @@ Result<std::vector<TimedPose>> TumPoses(std::string_view text, const fs::path& f
   while (words.Advance()) {
     if (poses.size() == kMaxImageCount)
       return words.Fault(fmt::format("has more than {} poses", kMaxImageCount));
-    TimedPose pose;
-    LF_ASSIGN_OR_RETURN(pose.time_s, words.Number("the time", kMostTime_s));
-    LF_ASSIGN_OR_RETURN(const std::vector<double> place,
-                        words.Numbers("the position", 3, kLargest_w));
-    LF_ASSIGN_OR_RETURN(const std::vector<double> q, words.Numbers("the quaternion", 4, 2));
-    const Result<Mat3> rotation = RotationOfQuaternion(q[3], q[0], q[1], q[2]);
+    LF_ASSIGN_OR_RETURN(const std::vector<double> n,
+                        words.NumbersOfLine("time x y z qx qy qz qw", 8, kLargest_w));
+    const Result<Mat3> rotation = RotationOfQuaternion(n[7], n[4], n[5], n[6]);
     if (!rotation) return words.Fault("the quaternion " + rotation.error().message);
-    pose.world_from_cam = Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized();
-    pose.centre = Vec3(place.data());
+    const TimedPose pose = {
+        n[0], Eigen::Quaterniond(n[7], n[4], n[5], n[6]).normalized(), {n[1], n[2], n[3]}};
     if (!poses.empty() && !(pose.time_s > poses.back().time_s))
       return words.Fault(fmt::format(
           "the time {} is not later than the one before, {}: expected poses in the order "
@@ -58,7 +56,7 @@ RigidTransform PoseOfTum(const TimedPose& pose) {
 }
 
 // Returns the pose at a time; none if no pose is near.
-std::optional<RigidTransform> PoseAtTime(const std::vector<TimedPose>& poses, double time_s) {
+std::optional<RigidTransform> TumPoseAt(const std::vector<TimedPose>& poses, double time_s) {
   const auto after = std::lower_bound(
       poses.begin(), poses.end(), time_s,
       [](const TimedPose& pose, double wanted_s) { return pose.time_s < wanted_s; });
@@ -93,9 +91,12 @@ Result<ExportedCameras> ParseTum(std::string_view text, const fs::path& file, st
   for (; words.Advance(); ++count) {
     if (count == kMaxImageCount)
       return words.Fault(fmt::format("names more than {} images", kMaxImageCount));
-    LF_ASSIGN_OR_RETURN(const double time_s, words.Number("the time of an image", kMostTime_s));
-    LF_ASSIGN_OR_RETURN(std::string name, words.Word("the name of an image"));
-    const std::optional<RigidTransform> pose = PoseAtTime(poses, time_s);
+    LF_ASSIGN_OR_RETURN(const double time_s, words.Number("the time of an image", kMostTumTime_s));
+    std::string name = words.line().Rest(kLongestTumName);
+    if (name.empty() || name.size() > kLongestTumName)
+      return words.Fault(
+          fmt::format("expected a time and a name of 1 to {} bytes", kLongestTumName));
+    const std::optional<RigidTransform> pose = TumPoseAt(poses, time_s);
     if (!pose) continue;
     ExportedImage image;
     image.name = std::move(name);

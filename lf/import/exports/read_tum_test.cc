@@ -17,12 +17,12 @@ const std::string kTum = R"(# timestamp tx ty tz qx qy qz qw
 20.0 9 9 9 0 0 0 1
 )";
 
-Result<ExportedCameras> ParseTrack(const std::string& text, const std::string& list) {
+Result<ExportedCameras> ParseTumTrack(const std::string& text, const std::string& list) {
   return ParseTum(text, "f/groundtruth.txt", list, "f/rgb.txt", 100);
 }
 
 TEST(Tum, ReadsThePoseOfTheTimeOfAnImage) {
-  const Result<ExportedCameras> cameras = ParseTrack(
+  const Result<ExportedCameras> cameras = ParseTumTrack(
       kTum, "# time name\n10.0 rgb/a.png\n10.05 rgb/b.png\n15 rgb/c.png\n20.015 rgb/d.png\n");
   ASSERT_TRUE(cameras) << cameras.error().message;
   ASSERT_EQ(cameras->images.size(), 3u);  // no pose is near the third
@@ -36,12 +36,13 @@ TEST(Tum, ReadsThePoseOfTheTimeOfAnImage) {
 
 TEST(Tum, NamesWhatIsWrong) {
   const std::string list = "10 a.png\n";
-  ExpectFault(ParseTrack(Replaced(kTum, "10.1", "9"), list), "the time 9 is not later than");
-  ExpectFault(ParseTrack(Replaced(kTum, "9 9 9", "9 nan 9"), list), "the position");
-  ExpectFault(ParseTrack(Replaced(kTum, "0 0 0 1", "0 0 0 2"), list), "has the length 2");
-  ExpectFault(ParseTrack(Replaced(kTum, "0 0 0 1", "0"), list),
-              "the file ends before the quaternion");
-  ExpectFault(ParseTrack(kTum, "10\n"), "f/rgb.txt");
+  ExpectFault(ParseTumTrack(Replaced(kTum, "10.1", "9"), list), "the time 9 is not later than");
+  ExpectFault(ParseTumTrack(Replaced(kTum, "9 9 9", "9 nan 9"), list), "time x y z qx qy qz qw");
+  ExpectFault(ParseTumTrack(Replaced(kTum, "0 0 0 1", "0 0 0 2"), list), "has the length 2");
+  ExpectFault(ParseTumTrack(Replaced(kTum, "0 0 0 1", "0"), list), "has fewer than 8 numbers");
+  ExpectFault(ParseTumTrack(Replaced(kTum, "0 0 0 1", "0 0 0 1 2"), list),
+              "has more than 8 numbers");
+  ExpectFault(ParseTumTrack(kTum, "10\n"), "f/rgb.txt:1: expected a time and a name");
 }
 
 using TumFolder = FolderTest;

@@ -459,8 +459,10 @@ Result<LightField> OpenFolder(const fs::path& path, const OpenOptions& options) 
   std::string hint = LightFieldsBelow(path);
   if (hint.empty()) {
     const ExportAdvice advice = AdviceOnExportsIn(path);
-    // Nobody is told to reconstruct poses that are there.
-    hint = advice.text + (advice.has_poses ? "" : PhotographsIn(path) + series);
+    // Nobody is told to reconstruct poses that are there, or of all the forms that are not there.
+    if (advice.has_poses)
+      return InputError(fmt::format("{}: holds no light field{}", path.string(), advice.text));
+    hint = advice.text + PhotographsIn(path) + series;
   }
   return InputError(fmt::format(
       "{}: holds no light field: looked for {}, a COLMAP model in it or in sparse/0, NAME_par.txt, "

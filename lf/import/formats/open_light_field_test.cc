@@ -240,12 +240,12 @@ TEST_F(OpenLightFieldTest, AdvisesHowToExportWhatIsNotRead) {
   ASSERT_TRUE(WriteFileAtomically(folder_ / "backup.zip", ""));
   EXPECT_NE(error(folder_).find("backup.zip is an archive"), std::string::npos);
   EXPECT_NE(error(folder_).find("reconstruct the poses first"), std::string::npos);
+  EXPECT_NE(error(folder_).find("reconstruction.json (OpenSfM, OpenDroneMap)"), std::string::npos);
   // The poses lie there, so that nobody is told to reconstruct them.
   ASSERT_TRUE(WriteFileAtomically(folder_ / "scan.psx", ""));
   EXPECT_EQ(error(folder_).find("reconstruct the poses first"), std::string::npos);
   EXPECT_NE(error(folder_).find("scan.psx is a project of Metashape"), std::string::npos);
   EXPECT_NE(error(folder_ / "scan.psx").find("File > Export > Export Cameras"), std::string::npos);
-  EXPECT_NE(error(folder_).find("reconstruction.json (OpenSfM, OpenDroneMap)"), std::string::npos);
 }
 
 TEST_F(OpenLightFieldTest, SaysWhatItLookedFor) {
