@@ -12,6 +12,7 @@ find_package(CLI11 2 REQUIRED)
 find_package(hwy 1.0 REQUIRED)
 find_package(SQLite3 3.40 REQUIRED)
 find_package(ICU 72 REQUIRED COMPONENTS uc)
+find_package(pugixml 1.13 REQUIRED)
 # Debian's packages of these libraries have no files for CMake.
 find_path(LF_ZSTD_INCLUDE zstd.h REQUIRED)
 find_library(LF_ZSTD_LIBRARY zstd REQUIRED)

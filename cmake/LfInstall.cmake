@@ -17,7 +17,7 @@ target_include_directories(lf_installed INTERFACE $<INSTALL_INTERFACE:${CMAKE_IN
 # name, so that their user needs no CMake packages of them.
 target_link_libraries(lf_installed PUBLIC Eigen3::Eigen fmt::fmt TBB::tbb Threads::Threads yaml-cpp
                                           hwy::hwy OpenEXR::OpenEXR OpenEXR::OpenEXRCore png tiff z raw_r jpeg lcms2
-                                          simdjson zstd xxhash sqlite3 icuuc ${LF_OCIO_NAME})
+                                          simdjson zstd xxhash sqlite3 icuuc pugixml ${LF_OCIO_NAME})
 install(TARGETS lf_installed EXPORT lfrendertoolsTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 

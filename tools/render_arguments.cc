@@ -31,7 +31,8 @@ void AddInput(CLI::App& app, RenderArguments& a) {
       .Add("INPUT", a.inputs,
            "LIGHTFIELD PATH, or PACKAGE... of lfpreprocessor\n"
            "LIGHTFIELD: a calibration file or its folder (transforms.json, COLMAP, Middlebury, "
-           "LLFF, HCI, AOS), a packed store, or a folder of images with Stanford names\n"
+           "LLFF, HCI, AOS, exports of other programs), a packed store, or a folder of images with "
+           "Stanford names\n"
            "PATH: a camera path of our own (doc/formats/path.md), of another program, or the "
            "cameras of a "
            "calibration (doc/formats/foreign_paths.md)\n"

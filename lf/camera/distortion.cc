@@ -17,12 +17,18 @@ struct ValueAndSlope {
   double slope = 0;
 };
 
-// The radial part of kRadialTangential: the radius rd = r numerator(r^2) / denominator(r^2), and
-// its derivative by r.
+// The radial part of kRadialTangential and kBrown: the radius rd = r numerator(r^2) /
+// denominator(r^2), and its derivative by r.
 class RadialCurve {
  public:
-  explicit RadialCurve(const DistortionParameters& p)
-      : numerator_{p[0], p[1], p[4]}, denominator_{p[5], p[6], p[7]} {}
+  explicit RadialCurve(const Distortion& distortion) {
+    const DistortionParameters& p = distortion.parameters;
+    numerator_ = {p[0], p[1], p[4], 0};
+    if (distortion.model == DistortionModel::kBrown)
+      numerator_[3] = p[5];
+    else
+      denominator_ = {p[5], p[6], p[7], 0};
+  }
 
   // Returns numerator(s) / denominator(s), with s = r^2, and its derivative by s.
   ValueAndSlope Factor(double s) const {
@@ -36,10 +42,11 @@ class RadialCurve {
   bool IsPole(double r) const { return !(Evaluate(denominator_, r * r).value > 0); }
 
  private:
-  static ValueAndSlope Evaluate(const std::array<double, 3>& k, double s) {
-    return {1 + s * (k[0] + s * (k[1] + s * k[2])), k[0] + s * (2 * k[1] + s * 3 * k[2])};
+  static ValueAndSlope Evaluate(const std::array<double, 4>& k, double s) {
+    return {1 + s * (k[0] + s * (k[1] + s * (k[2] + s * k[3]))),
+            k[0] + s * (2 * k[1] + s * 3 * k[2] + s * s * 4 * k[3])};
   }
-  std::array<double, 3> numerator_, denominator_;
+  std::array<double, 4> numerator_ = {}, denominator_ = {};  // factors of s, s^2, s^3 and s^4
 };
 
 // The radial part of kFisheye: the radius rd = theta (1 + k1 theta^2 + ... + k4 theta^8), and its
@@ -139,7 +146,7 @@ struct Bent {
   Eigen::Matrix2d jacobian;
 };
 
-// Returns the distorted position of u = (x, y) by kRadialTangential.
+// Returns the distorted position of u = (x, y) by kRadialTangential or kBrown.
 Bent Bend(const DistortionParameters& p, const RadialCurve& curve, const Vec2& u) {
   const double x = u.x(), y = u.y(), s = x * x + y * y;
   const double p1 = p[2], p2 = p[3];
@@ -211,9 +218,10 @@ std::optional<Vec2> Unbend(const BendIt& bend, const Vec2& distorted, Vec2 start
   return u;
 }
 
-std::optional<Vec2> UnbendRadialTangential(const DistortionParameters& p, const Vec2& distorted,
+std::optional<Vec2> UnbendRadialTangential(const Distortion& distortion, const Vec2& distorted,
                                            double limit, double distorted_limit) {
-  const RadialCurve curve(p);
+  const DistortionParameters& p = distortion.parameters;
+  const RadialCurve curve(distortion);
   const double rd = distorted.norm();
   const bool is_radial = p[2] == 0 && p[3] == 0;
   if (rd == 0 && is_radial) return Vec2(0, 0);
@@ -272,9 +280,10 @@ Limits FindLimits(const Distortion& distortion) {
   switch (distortion.model) {
     case DistortionModel::kNone:
       return {};
-    case DistortionModel::kRadialTangential: {
+    case DistortionModel::kRadialTangential:
+    case DistortionModel::kBrown: {
       constexpr double kWidest = RadiansFromDegrees(89.5);
-      return LimitsOf(RadialCurve(p), [](double t) { return std::tan(t * kWidest); });
+      return LimitsOf(RadialCurve(distortion), [](double t) { return std::tan(t * kWidest); });
     }
     case DistortionModel::kFisheye:
       return LimitsOf(FisheyeCurve(FirstFour(p)), angle);
@@ -356,9 +365,10 @@ std::optional<Vec2> DistortionMap::Distort(const Vec3& direction) const {
   if (!(z > 0)) return std::nullopt;
   const Vec2 u = direction.head<2>() / z;
   switch (distortion_.model) {
-    case DistortionModel::kRadialTangential: {
+    case DistortionModel::kRadialTangential:
+    case DistortionModel::kBrown: {
       if (!(u.norm() <= limit_)) return std::nullopt;
-      const Bent bent = Bend(p, RadialCurve(p), u);
+      const Bent bent = Bend(p, RadialCurve(distortion_), u);
       if (!(bent.jacobian.determinant() > 0)) return std::nullopt;
       return bent.value;
     }
@@ -391,8 +401,10 @@ std::optional<Vec3> DistortionMap::Undistort(const Vec2& distorted) const {
   switch (distortion_.model) {
     case DistortionModel::kNone:
       break;
-    case DistortionModel::kRadialTangential: {
-      const std::optional<Vec2> u = UnbendRadialTangential(p, distorted, limit_, distorted_limit_);
+    case DistortionModel::kRadialTangential:
+    case DistortionModel::kBrown: {
+      const std::optional<Vec2> u =
+          UnbendRadialTangential(distortion_, distorted, limit_, distorted_limit_);
       if (!u) return std::nullopt;
       return Vec3(u->x(), u->y(), 1);
     }

@@ -55,6 +55,10 @@ enum class DistortionModel : uint8_t {
   //   yd = b + p1 (q + 2 b^2) + 2 p0 a b + s2 q + s3 q^2
   // (Project Aria: Fisheye624; COLMAP: RAD_TAN_THIN_PRISM_FISHEYE)
   kRadialTangentialThinPrism,
+  // k1 k2 p1 p2 k3 k4; as kRadialTangential, with one more term instead of a denominator:
+  //   radial = 1 + k1 r^2 + k2 r^4 + k3 r^6 + k4 r^8
+  // (Metashape, RealityScan: Brown with four radial coefficients; nerfstudio's k4)
+  kBrown,
 };
 
 // Parameters of a model, in the order that the comment of the model states. Parameters that the
@@ -98,13 +102,13 @@ class DistortionMap {
   // Returns the direction that is distorted to (xd, yd); none if no ray arrives there. If the model
   // has no closed formula, the direction is found by iteration: Distort() of the result is within
   // 1e-12 of (xd, yd). The length of the result is above 0 and varies smoothly over the image; Z =
-  // 1 for kNone and kRadialTangential.
+  // 1 for kNone, kRadialTangential and kBrown.
   std::optional<Vec3> Undistort(const Vec2& distorted) const;
 
  private:
   Distortion distortion_;
-  // Largest undistorted radius that has an image: r = tan(theta) for kRadialTangential, theta <=
-  // pi for fish-eyes. Other models do not use this member.
+  // Largest undistorted radius that has an image: r = tan(theta) for kRadialTangential and kBrown,
+  // theta <= pi for fish-eyes. Other models do not use this member.
   double limit_;
   // Largest distorted radius rd that the radial part of the model reaches; infinity if there is no
   // limit.

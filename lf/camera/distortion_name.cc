@@ -23,6 +23,8 @@ const char* NameOf(DistortionModel model) {
       return "thin-prism fisheye";
     case DistortionModel::kRadialTangentialThinPrism:
       return "radial-tangential thin-prism fisheye";
+    case DistortionModel::kBrown:
+      return "brown";
   }
   LF_CHECK(false);
 }

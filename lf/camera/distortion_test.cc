@@ -25,6 +25,7 @@ std::vector<Lens> Lenses() {
           {"barrel", {kRadialTangential, {-0.25, 0.07}}, 0.7},
           {"tangential", {kRadialTangential, {-0.28, 0.09, 0.002, -0.003}}, 0.7},
           {"rational", {kRadialTangential, {0.3, -0.1, 5e-4, -2e-4, 0.02, 0.6, -0.05, 0.01}}, 0.8},
+          {"four radial terms", {kBrown, {-0.09, -0.076, 1e-3, -2e-3, 0.116, -0.076}}, 0.75},
           {"fish-eye", {kFisheye, {-0.02, 0.004, -0.002, 3e-4}}, 1.7},
           {"fov", {kFov, {0.93}}, 1.5},
           {"equidistant", {kFisheye, {}}, 1.7},
@@ -60,6 +61,12 @@ Vec2 ByFormula(const Distortion& distortion, const Vec3& direction) {
           1 + p[5] * std::pow(r, 2) + p[6] * std::pow(r, 4) + p[7] * std::pow(r, 6);
       return {x * above / below + 2 * p[2] * x * y + p[3] * (r * r + 2 * x * x),
               y * above / below + p[2] * (r * r + 2 * y * y) + 2 * p[3] * x * y};
+    }
+    case DistortionModel::kBrown: {
+      const double radial = 1 + p[0] * std::pow(r, 2) + p[1] * std::pow(r, 4) +
+                            p[4] * std::pow(r, 6) + p[5] * std::pow(r, 8);
+      return {x * radial + 2 * p[2] * x * y + p[3] * (r * r + 2 * x * x),
+              y * radial + p[2] * (r * r + 2 * y * y) + 2 * p[3] * x * y};
     }
     case DistortionModel::kFisheye: {
       double rd = theta;

@@ -37,11 +37,12 @@ class Intrinsics:
         Size of the LF images in pixels.
     distortion : str
         Model of the lens distortion: "pinhole" (none), "radial-tangential", "fisheye", "fov", "division", "unified",
-        "thin-prism fisheye" or "radial-tangential thin-prism fisheye".
+        "thin-prism fisheye", "radial-tangential thin-prism fisheye" or "brown".
     parameters : tuple of float
         12 numbers, of which the last are 0 if the model has fewer: OpenCV's k1, k2, p1, p2, k3, k4, k5, k6 for
-        "radial-tangential" and k1, k2, k3, k4 for "fisheye"; omega for "fov"; k for "division"; alpha, beta for
-        "unified"; k1, k2, p1, p2, k3, k4, sx1, sy1 and k0 to k5, p0, p1, s0 to s3 for the thin prisms.
+        "radial-tangential" and k1, k2, k3, k4 for "fisheye"; k1, k2, p1, p2, k3, k4 for "brown"; omega for "fov"; k
+        for "division"; alpha, beta for "unified"; k1, k2, p1, p2, k3, k4, sx1, sy1 and k0 to k5, p0, p1, s0 to s3 for
+        the thin prisms.
     """
 
     K: Floats

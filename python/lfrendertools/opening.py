@@ -22,10 +22,10 @@ def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[
     Parameters
     ----------
     path : path
-        A calibration file or its folder (transforms.json, COLMAP, Middlebury, LLFF, HCI, AOS), a packed store
-        (STORE.lfs), or a folder of images with Stanford names.
+        A calibration file or its folder (transforms.json, COLMAP, Middlebury, LLFF, HCI, AOS, exports of other
+        programs), a packed store (STORE.lfs), or a folder of images with Stanford names.
     focal_px : float, optional
-        Focal length in pixels, for folders with Stanford names.
+        Focal length in pixels, for folders with Stanford names and trajectories in the form of TUM's benchmark.
     fov_deg : float, optional
         Field of view of the square LF images, for poses of Airborne Optical Sectioning (AOS).
     images : path, optional

@@ -11,6 +11,8 @@ import struct
 
 import numpy as np
 
+import write_exports
+
 COLMAP_MODELS = {"PINHOLE": 1, "OPENCV": 4, "OPENCV_FISHEYE": 5, "FULL_OPENCV": 6, "FOV": 7}
 
 
@@ -203,3 +205,16 @@ baseline_mm = {1000 * (xs[1] - xs[0])!r}
 focus_distance_m = 0
 """)
     return folder
+
+
+def exported(write):
+    """Returns a writer of an export of another program, by a function of write_exports.py, for square pixels and a
+    principal point in the middle."""
+    def writer(field, source, folder):
+        views = [write_exports.View(pathlib.Path(file_path).stem, rotation, -rotation.T @ translation,
+                                    (field["w"], field["h"])) for file_path, rotation, translation in poses(field)]
+        write(folder, views, focal_px=field["fl_x"])
+        copy_images(field, source, folder / "images")
+        return folder
+    writer.__name__ = write.__name__
+    return writer

@@ -3,8 +3,8 @@
 //
 // stdin   fx fy cx cy  MODEL  p1 .. p12, then X Y Z of each direction
 // stdout  for each direction, x y of its pixel and X Y Z of the ray of this pixel; or "none"
-// MODEL   none, radial-tangential, fisheye, fov, division, unified, thin-prism or
-//         radial-tangential-thin-prism
+// MODEL   none, radial-tangential, fisheye, fov, division, unified, thin-prism,
+//         radial-tangential-thin-prism or brown
 #include <cstdio>
 #include <iostream>
 #include <string>
@@ -38,6 +38,8 @@ int main() {
     k.distortion.model = lf::DistortionModel::kThinPrism;
   else if (model == "radial-tangential-thin-prism")
     k.distortion.model = lf::DistortionModel::kRadialTangentialThinPrism;
+  else if (model == "brown")
+    k.distortion.model = lf::DistortionModel::kBrown;
   else if (model != "none")
     return Fail("unknown model");
   for (double& parameter : k.distortion.parameters) std::cin >> parameter;

@@ -78,6 +78,15 @@ def by_numpy_eucm(parameters, points):
     return points[:, :2] / (alpha * rho + (1 - alpha) * points[:, 2])[:, None] * F + C
 
 
+def by_numpy_brown(parameters, points):
+    k1, k2, p1, p2, k3, k4 = parameters
+    x, y = (points[:, :2] / points[:, 2:]).T
+    r = np.hypot(x, y)
+    radial = 1 + k1 * r ** 2 + k2 * r ** 4 + k3 * r ** 6 + k4 * r ** 8
+    return np.stack([x * radial + 2 * p1 * x * y + p2 * (r ** 2 + 2 * x ** 2),
+                     y * radial + p1 * (r ** 2 + 2 * y ** 2) + 2 * p2 * x * y], 1) * F + C
+
+
 def by_numpy_thin_prism(parameters, points):
     k1, k2, p1, p2, k3, k4, sx1, sy1 = parameters
     across = np.hypot(points[:, 0], points[:, 1])
@@ -113,6 +122,7 @@ MODELS = {
     "OPENCV": ("radial-tangential", [-0.28, 0.09, 0.002, -0.003], 0.7, by_opencv),
     "FULL_OPENCV": ("radial-tangential", [0.3, -0.1, 5e-4, -2e-4, 0.02, 0.6, -0.05, 0.01], 0.8,
                     by_opencv),
+    "BROWN": ("brown", [-0.09, -0.076, 1e-3, -2e-3, 0.116, -0.076], 0.75, by_numpy_brown),
     "OPENCV_FISHEYE": ("fisheye", [-0.02, 0.004, -0.002, 3e-4], 1.5, by_opencv_fisheye),
     "OPENCV_FISHEYE, behind itself": ("fisheye", [-0.02, 0.004, -0.002, 3e-4], 1.7,
                                       by_numpy_fisheye),

@@ -16,7 +16,9 @@ os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"
 import cv2
 import numpy as np
 
+import write_exports
 import write_formats
+import write_scans
 
 SYNTH = EXAMPLE = IMPORT = RENDERER = None
 
@@ -205,6 +207,12 @@ class FormatsTest(unittest.TestCase):
         self.check(write_formats.stanford_without_positions, self.parallel,
                    ["--pitch", repr(float(xs[1] - xs[0])), "--focal-px", repr(field["fl_x"])],
                    reads_itself=False)
+
+    def test_exports_of_other_programs(self):
+        for write in (write_exports.write_opensfm, write_exports.write_bundler, write_exports.write_splat_cameras,
+                      write_scans.write_metashape, write_scans.write_reality_csv, write_scans.write_reality_xmp):
+            with self.subTest(write.__name__):
+                self.check(write_formats.exported(write), self.jittered)
 
     def test_every_lens_gives_the_picture_of_the_pinhole(self):
         """Renders light fields whose LF cameras have other lenses. The tolerance is larger, because the pixels of

@@ -21,7 +21,7 @@ struct FileKind {
   bool folders;
 };
 constexpr std::array kFileKinds = {
-    FileKind{"light_field", ".lfs .json .txt .npy .cfg", true},
+    FileKind{"light_field", ".lfs .json .txt .npy .cfg .sfm .out .nvm .xml .csv .xmp", true},
     FileKind{"path", ".yaml .yml .json .chan", true},
     FileKind{"package", ".lfp", false},
     FileKind{"store", ".lfs", false},

@@ -15,7 +15,9 @@ void AddUnusualOptions(CLI::App& app, LightFieldArgument& argument) {
       .Add("--focal-px PIXELS", argument.focal_px,
            "Focal length of the LF cameras (as recorded)\n"
            "In pixels of the LF images. Needed if LIGHTFIELD is a folder of images with Stanford "
-           "names (doc/formats/stanford.md) that do not contain the focal length.")
+           "names (doc/formats/stanford.md) that do not contain the focal length, or a trajectory "
+           "in "
+           "the form of TUM's benchmark (doc/formats/tum.md).")
       ->check(CLI::NonNegativeNumber);
   unusual
       .Add("--fov-deg DEGREES", argument.fov_deg,
@@ -46,8 +48,10 @@ void LightFieldArgument::AddTo(CLI::App& app) {
   input
       .Add("LIGHTFIELD", path,
            "Calibration file, its folder, or a packed store\n"
-           "The calibration is a transforms.json, or a calibration of COLMAP, Middlebury, LLFF, "
-           "HCI or AOS. A packed store is one file, STORE.lfs. A folder of images with Stanford "
+           "The calibration is a transforms.json, a calibration of COLMAP, Middlebury, LLFF, "
+           "HCI or AOS, or an export of another program, such as Metashape or Meshroom "
+           "(doc/inputs.md). A packed store is one file, STORE.lfs. A folder of images with "
+           "Stanford "
            "names is also a light field: the names contain the calibration.")
       ->required()
       ->check(NotEmpty());

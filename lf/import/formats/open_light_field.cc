@@ -13,7 +13,8 @@
 
 #include "lf/core/log.h"
 #include "lf/core/shell_word.h"
-#include "lf/import/formats/import_limits.h"
+#include "lf/import/exports/export_forms.h"
+#include "lf/import/exports/import_limits.h"
 #include "lf/import/formats/read_aos.h"
 #include "lf/import/formats/read_hci.h"
 #include "lf/import/formats/read_llff.h"
@@ -113,9 +114,43 @@ Result<LightField> OpenPackedStore(const fs::path& path, const OpenOptions& opti
   return std::move(facts.light_field);
 }
 
+// Returns kUsage if an option is given that the export of another program does not need.
+Result<void> CheckExportOptions(const ExportForm& form, const fs::path& path, OpenOptions options) {
+  if (form.takes_focal) options.focal_px.reset();
+  LF_RETURN_IF_ERROR(CheckNoStanfordOptions(path, options));
+  return CheckNoFov(path, options);
+}
+
+ExportOptions ExportOptionsOf(const OpenOptions& options) {
+  return {.images_folder = options.images_folder, .focal_px = options.focal_px};
+}
+
+// Opens an export of another program. Returns nullopt if the file is none.
+std::optional<Result<LightField>> OpenExport(const fs::path& path, const OpenOptions& options) {
+  const ExportForm* const form = ExportFormOf(path);
+  if (form == nullptr) return std::nullopt;
+  if (Result<void> result = CheckExportOptions(*form, path, options); !result)
+    return result.error();
+  return OpenExportFile(path, ExportOptionsOf(options));
+}
+
+// Opens the first export in a folder, which must hold one.
+Result<LightField> OpenFirstExport(const fs::path& folder, const OpenOptions& options) {
+  const std::vector<FoundExport> found = ExportsIn(folder, /*reads=*/true);
+  LF_CHECK(!found.empty());
+  LF_RETURN_IF_ERROR(CheckExportOptions(*found[0].form, folder, options));
+  std::optional<Result<LightField>> opened = OpenExportIn(folder, ExportOptionsOf(options));
+  LF_CHECK(opened.has_value());
+  return *std::move(opened);
+}
+
 // Opens a calibration file or packed store. Returns nullopt if its name is of no known kind.
 std::optional<Result<LightField>> OpenFile(const fs::path& path, const OpenOptions& options) {
-  if (path.extension() == ".json" && IsAosFile(path)) return OpenAos(path, options);
+  const bool is_json = path.extension() == ".json";
+  if (is_json && IsAosFile(path)) return OpenAos(path, options);
+  // An export is told from a transforms.json by the words in it.
+  if (is_json && !path.filename().string().starts_with("transforms"))
+    if (std::optional<Result<LightField>> opened = OpenExport(path, options)) return opened;
   if (path.extension() == kStoreExtension) return OpenPackedStore(path, options);
   const std::optional<fs::path>& images = options.images_folder;
   const struct {
@@ -123,8 +158,7 @@ std::optional<Result<LightField>> OpenFile(const fs::path& path, const OpenOptio
     const char* name;
     std::function<Result<LightField>()> read;
   } kinds[] = {
-      {path.extension() == ".json", "transforms.json",
-       [&] { return ReadTransformsJson(path, images); }},
+      {is_json, "transforms.json", [&] { return ReadTransformsJson(path, images); }},
       {path.extension() == ".npy", "LLFF poses", [&] { return ReadLlff(path, images); }},
       {path.extension() == ".cfg", "parameters of the 4D Light Field Benchmark",
        [&] { return ReadHci(path); }},
@@ -138,7 +172,7 @@ std::optional<Result<LightField>> OpenFile(const fs::path& path, const OpenOptio
     LogDebug("{}: opened as {}", path.string(), kind.name);
     return kind.read();
   }
-  return std::nullopt;
+  return OpenExport(path, options);
 }
 
 Result<LightField> OpenSplits(const std::vector<fs::path>& files, const OpenOptions& options) {
@@ -353,23 +387,21 @@ bool HoldsGrid(const fs::path& folder) {
          FindStanfordNames(folder / kImagesName) == StanfordNames::kGrid;
 }
 
-Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& options) {
+// Tells if a folder also holds an export of another program, besides a calibration that was read
+// and was not made from it.
+void LogUnreadExport(const fs::path& path) {
+  const std::vector<FoundExport> exports = ExportsIn(path, /*reads=*/true);
+  if (exports.empty() || HoldsOwnAndItsSource(path)) return;
+  LogInfo("{} is {}, too, and is not read: give its path to read it instead",
+          exports[0].files[0].string(), exports[0].form->name);
+}
+
+// Opens the calibration of a folder, unless it holds none but exports of other programs.
+//   series  gets a hint about the names of the images, if they are numbered
+std::optional<Result<LightField>> OpenOwnForm(const fs::path& path, const OpenOptions& options,
+                                              std::string* series) {
   std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::none)
-    return InputError(fmt::format("{}: cannot be read: {}", path.string(), error.message()));
-  if (!fs::exists(status))
-    return InputError(fmt::format("{}: no such file or folder", path.string()));
-  if (!fs::is_directory(status)) {
-    if (std::optional<Result<LightField>> opened = OpenFile(path, options)) return *opened;
-    return InputError(
-        fmt::format("{}: is not a light field: expected a transforms.json, a NAME_par.txt "
-                    "(Middlebury), a poses_bounds.npy (LLFF), a parameters.cfg (4D Light Field "
-                    "Benchmark), a poses.json (AOS), a packed store "
-                    "(STORE.lfs) or the folder of one, the folder of a COLMAP model, or a folder "
-                    "of images",
-                    path.string()));
-  }
+  const auto has_export = [&] { return !ExportsIn(path, /*reads=*/true).empty(); };
   // Options that only names need ask for the names.
   const bool passes_over =
       (options.passes_over_own || !StanfordOptionOf(options).empty()) && HoldsOwnAndItsSource(path);
@@ -383,21 +415,27 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
     if (model && *model) return OpenColmap(**model, options);
     if (!model) broken_model = model.error();
   }
-  LF_ASSIGN_OR_RETURN(const std::optional<fs::path> calibration,
-                      passes_over ? OtherCalibrationIn(path) : CalibrationIn(path));
-  if (broken_model && !calibration) return *broken_model;
+  const Result<std::optional<fs::path>> calibration =
+      passes_over ? OtherCalibrationIn(path) : CalibrationIn(path);
+  if (!calibration) return calibration.error();
+  if (broken_model && !*calibration && !has_export()) return *broken_model;
   if (broken_model)
-    LogWarning("{}; {} is read instead", broken_model->message, calibration->string());
-  if (calibration) return *OpenFile(*calibration, options);
+    LogWarning("{}; {} is read instead", broken_model->message,
+               *calibration ? (*calibration)->string() : "an export of another program");
+  if (*calibration) return *OpenFile(**calibration, options);
+  if (broken_model) return std::nullopt;
   if (const std::vector<fs::path> splits = SplitsIn(path); !splits.empty())
     return OpenSplits(splits, options);
-  std::string series;
   for (const fs::path& folder : {path, path / kImagesName}) {
     const StanfordNames names = FindStanfordNames(folder);
-    if (names == StanfordNames::kGrid || (names == StanfordNames::kSeries && options.pitch_w))
-      return OpenStanford(folder, options, path);
+    if (names == StanfordNames::kGrid || (names == StanfordNames::kSeries && options.pitch_w)) {
+      Result<LightField> opened = OpenStanford(folder, options, path);
+      if (opened || !StanfordOptionOf(options).empty() || !has_export()) return opened;
+      LogInfo("{}: the names of the images do not state the whole calibration", folder.string());
+      return std::nullopt;
+    }
     if (names == StanfordNames::kSeries)
-      series = fmt::format(
+      *series = fmt::format(
           "; the names in {} end in two numbers, but not in those of a grid of cameras: if they "
           "are rows and columns, give their distance to lfimport ({{pitch}})",
           folder.string());
@@ -408,13 +446,49 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
     return InputError(fmt::format(
         "{}: holds several packed stores, such as {} and {}: give the path of one of them",
         path.string(), stores[0].filename().string(), stores[1].filename().string()));
-  const std::string below = LightFieldsBelow(path);
+  return std::nullopt;
+}
+
+Result<LightField> OpenFolder(const fs::path& path, const OpenOptions& options) {
+  std::string series;
+  if (std::optional<Result<LightField>> own = OpenOwnForm(path, options, &series)) {
+    if (*own) LogUnreadExport(path);
+    return *std::move(own);
+  }
+  if (!ExportsIn(path, /*reads=*/true).empty()) return OpenFirstExport(path, options);
+  std::string hint = LightFieldsBelow(path);
+  if (hint.empty()) {
+    const ExportAdvice advice = AdviceOnExportsIn(path);
+    // Nobody is told to reconstruct poses that are there, or of all the forms that are not there.
+    if (advice.has_poses)
+      return InputError(fmt::format("{}: holds no light field{}", path.string(), advice.text));
+    hint = advice.text + PhotographsIn(path) + series;
+  }
   return InputError(fmt::format(
       "{}: holds no light field: looked for {}, a COLMAP model in it or in sparse/0, NAME_par.txt, "
-      "{}, {}, {} (AOS), one packed store NAME.lfs, and for images named "
-      "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext or NAME_ROW_COL.ext in it and in {}/{}{}",
+      "{}, {}, {} (AOS), one packed store NAME.lfs, for images named "
+      "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext or NAME_ROW_COL.ext in it and in {}/, and for exports "
+      "of other programs ({}){}{}",
       path.string(), kCalibrationName, kLlffName, kHciName, kAosName, kImagesName,
-      OtherCalibrations(path), below.empty() ? PhotographsIn(path) + series : below));
+      ListOfExportForms(), OtherCalibrations(path), hint));
+}
+
+Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& options) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::none)
+    return InputError(fmt::format("{}: cannot be read: {}", path.string(), error.message()));
+  if (!fs::exists(status))
+    return InputError(fmt::format("{}: no such file or folder", path.string()));
+  if (fs::is_directory(status)) return OpenFolder(path, options);
+  if (std::optional<Result<LightField>> opened = OpenFile(path, options)) return *opened;
+  return InputError(
+      fmt::format("{}: is not a light field: expected a transforms.json, a NAME_par.txt "
+                  "(Middlebury), a poses_bounds.npy (LLFF), a parameters.cfg (4D Light Field "
+                  "Benchmark), a poses.json (AOS), a packed store "
+                  "(STORE.lfs) or the folder of one, the folder of a COLMAP model, a folder "
+                  "of images, or an export of another program ({})",
+                  path.string(), ListOfExportForms()));
 }
 
 // Warns if none of the image files is there, and the folder also holds a COLMAP model or another
@@ -426,7 +500,10 @@ void WarnOfOtherCalibration(const fs::path& path, const LightField& light_field)
     return;
   const Result<std::optional<fs::path>> model = FindColmapModel(path, /*warns=*/false);
   const Result<std::optional<fs::path>> other = OtherCalibrationIn(path);
-  const auto& found = model && *model ? model : other;
+  Result<std::optional<fs::path>> found = model && *model ? model : other;
+  if (const std::vector<FoundExport> exports = ExportsIn(path, /*reads=*/true);
+      found && !*found && !exports.empty())
+    found = std::optional(exports[0].files[0]);
   if (!found || !*found) return;
   LogWarning(
       "{}: none of the image files that it names is there, such as {}; {} may belong to the images "
@@ -443,7 +520,7 @@ bool HoldsLightField(const fs::path& folder) {
   if (model && *model) return true;
   const Result<std::optional<fs::path>> calibration = CalibrationIn(folder);
   return !calibration || *calibration || !SplitsIn(folder).empty() || HoldsGrid(folder) ||
-         !PackedStoresIn(folder).empty();
+         !PackedStoresIn(folder).empty() || !ExportsIn(folder, /*reads=*/true).empty();
 }
 
 bool HoldsOwnAndItsSource(const fs::path& folder) {
@@ -454,7 +531,8 @@ bool HoldsOwnAndItsSource(const fs::path& folder) {
   const Result<std::optional<fs::path>> model = FindColmapModel(folder);
   if (model && *model) return true;
   const Result<std::optional<fs::path>> other = OtherCalibrationIn(folder);
-  return (other && *other) || !SplitsIn(folder).empty() || HoldsGrid(folder);
+  return (other && *other) || !SplitsIn(folder).empty() || HoldsGrid(folder) ||
+         !ExportsIn(folder, /*reads=*/true).empty();
 }
 
 Result<std::vector<Vec3>> PointsSeenBy(const fs::path& path, const LightField& light_field,

@@ -16,8 +16,9 @@ namespace lf {
 
 struct OpenOptions {
   // focal_px to flip_y complete or override what the file names in a folder with Stanford names say
-  // (StanfordOptions, import/formats/read_stanford.h). If one of them is set, opening a calibration
-  // of another kind returns kUsage. Several programs have an option for focal_px; only lfimport has
+  // (StanfordOptions, import/formats/read_stanford.h), and focal_px also trajectories of TUM's form
+  // (import/exports/read_tum.h). If one of them is set, opening a calibration of another kind
+  // returns kUsage. Several programs have an option for focal_px; only lfimport has
   // options for the others.
   std::optional<double> focal_px = {};
   std::optional<Vec2> pitch_w = {};
@@ -73,11 +74,15 @@ bool HoldsOwnAndItsSource(const std::filesystem::path& folder);
 // - transforms_train.json, transforms_val.json and transforms_test.json: their union
 // - images with Stanford names, in the folder or its images/: import/formats/read_stanford.h
 // - STORE.lfs: storage/packed/packed_store_file.h
-// A file of a kind named after "or any" is opened only if `path` is the file itself. If the first
-// kind that is found in a folder is NAME_par.txt or STORE.lfs, two such files are an error. An
-// incomplete COLMAP model is an error unless another calibration file is there, which is then taken
-// with a warning. If no image file of a transforms.json is there, a warning names another
-// calibration in its folder.
+// - the exports of other programs, in the order of import/exports/export_table.cc, which tells them
+//   by their names and the words in them
+// A folder with Stanford names that lack a part of the calibration is opened by an export in it, if
+// there is one and no option states what the names lack. A .json file that is given itself is
+// opened as an export before it is taken for a transforms.json of another name. A file of a kind
+// named after "or any" is opened only if `path` is the file itself. If the first kind that is found
+// in a folder is NAME_par.txt or STORE.lfs, two such files are an error. An incomplete COLMAP model
+// is an error unless another calibration file is there, which is then taken with a warning. If no
+// image file of a transforms.json is there, a warning names another calibration in its folder.
 //
 // If image files are not where the calibration says, they are searched by name in its folder or in
 // OpenOptions::images_folder; not every file is checked for existence. If the headers of up to 64
@@ -86,7 +91,8 @@ bool HoldsOwnAndItsSource(const std::filesystem::path& folder);
 // alpha, it is derived from the pixels of up to three images (light_field/model/alpha_evidence.h)
 // and logged. For camera raw files, pattern, levels and colours that the calibration does not state
 // are read from the first file; a warning names what this file does not state either. kInput: there
-// is no light field (the message lists what was searched for); an error of the reader;
+// is no light field (the message lists what was searched for, and advises how to export files that
+// only other programs read); an error of the reader;
 // images_folder has none of the images; masks_folder has none of the masks; camera raw files with
 // an unknown Bayer pattern. kUsage: an option that the calibration does not allow.
 Result<LightField> OpenLightField(const std::filesystem::path& path,

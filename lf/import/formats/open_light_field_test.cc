@@ -167,6 +167,87 @@ TEST_F(OpenLightFieldTest, TakesPosesOfAirborneOpticalSectioningByContent) {
   EXPECT_EQ(OpenLightField(folder_, {.fov_deg = 90}).error().kind, ErrorKind::kUsage);
 }
 
+constexpr const char* kSplatCameras = R"([{"img_name": "a", "width": 8, "height": 6,
+    "position": [1, 2, 3], "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]], "fx": 5, "fy": 5}])";
+
+TEST_F(OpenLightFieldTest, TakesExportsOfOtherProgramsAfterItsOwnForms) {
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "cameras.json", kSplatCameras));
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "other.json", kSplatCameras));
+  EXPECT_TRUE(HoldsLightField(folder_));
+  for (const fs::path& path : {folder_, folder_ / "cameras.json", folder_ / "other.json"}) {
+    const Result<LightField> light_field = OpenLightField(path);
+    ASSERT_TRUE(light_field) << light_field.error().message;
+    EXPECT_EQ(light_field->intrinsics[0], (Intrinsics{5, 5, 4, 3, 0, 8, 6}));
+    EXPECT_EQ(OpenLightField(path, {.focal_px = 7}).error().kind, ErrorKind::kUsage);
+    EXPECT_EQ(OpenLightField(path, {.fov_deg = 7}).error().kind, ErrorKind::kUsage);
+  }
+  // An export of a program that comes earlier in the table is taken first.
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "a.nvm", "NVM_V3\n\n1\na.png 5 1 0 0 0 0 0 0 0 0\n"));
+  const Image<uint8_t> image(10, 4, 3);
+  ASSERT_TRUE(WriteImage(folder_ / "a.png", image.view()));
+  const Result<LightField> nvm = OpenLightField(folder_);
+  ASSERT_TRUE(nvm) << nvm.error().message;
+  EXPECT_EQ(nvm->intrinsics[0].width_px, 10);
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "b.nvm", "NVM_V3\n"));
+  const Result<LightField> two = OpenLightField(folder_);
+  ASSERT_FALSE(two);
+  EXPECT_NE(two.error().message.find("several calibrations, such as a.nvm and b.nvm"),
+            std::string::npos);
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "transforms.json", kCalibration));
+  const Result<LightField> own = OpenLightField(folder_);
+  ASSERT_TRUE(own) << own.error().message;
+  EXPECT_EQ(own->image_names[0], "a.png");
+  EXPECT_NE(own->intrinsics[0].width_px, 10);
+}
+
+TEST_F(OpenLightFieldTest, TakesAnExportBesideAnIncompleteModelOfColmap) {
+  fs::create_directories(folder_ / "sparse" / "0");
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "sparse" / "0" / "cameras.bin", ""));
+  EXPECT_FALSE(OpenLightField(folder_));
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "cameras.json", kSplatCameras));
+  const Result<LightField> light_field = OpenLightField(folder_);
+  ASSERT_TRUE(light_field) << light_field.error().message;
+  EXPECT_EQ(light_field->image_names, std::vector<std::string>{"a"});
+}
+
+TEST_F(OpenLightFieldTest, TakesAnExportIfNamesLackTheCalibration) {
+  const Image<uint8_t> image(8, 6, 3);
+  for (const char* const name : {"x_00_00.png", "x_00_01.png", "x_01_00.png", "x_01_01.png"})
+    ASSERT_TRUE(WriteImage(folder_ / name, image.view()));
+  EXPECT_FALSE(OpenLightField(folder_));
+  std::string cameras = kSplatCameras;
+  cameras.replace(cameras.find("\"a\""), 3, "\"x_01_00\"");
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "cameras.json", cameras));
+  const Result<LightField> light_field = OpenLightField(folder_);
+  ASSERT_TRUE(light_field) << light_field.error().message;
+  EXPECT_EQ(light_field->image_names, std::vector<std::string>{"x_01_00.png"});
+  const Result<LightField> grid = OpenLightField(folder_, {.focal_px = 7, .pitch_w = Vec2(1, 1)});
+  ASSERT_TRUE(grid) << grid.error().message;
+  EXPECT_EQ(grid->size(), 4u);
+}
+
+TEST_F(OpenLightFieldTest, AdvisesHowToExportWhatIsNotRead) {
+  const Image<uint8_t> image(8, 6, 3);
+  fs::create_directories(folder_ / "images");
+  for (const char* const name : {"a.png", "b.png"})
+    ASSERT_TRUE(WriteImage(folder_ / "images" / name, image.view()));
+  const auto error = [](const fs::path& path) {
+    const Result<LightField> light_field = OpenLightField(path);
+    return light_field ? "" : light_field.error().message;
+  };
+  EXPECT_NE(error(folder_).find("reconstruct the poses first"), std::string::npos);
+  // An archive of anything does not tell that the poses are there.
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "backup.zip", ""));
+  EXPECT_NE(error(folder_).find("backup.zip is an archive"), std::string::npos);
+  EXPECT_NE(error(folder_).find("reconstruct the poses first"), std::string::npos);
+  EXPECT_NE(error(folder_).find("reconstruction.json (OpenSfM, OpenDroneMap)"), std::string::npos);
+  // The poses lie there, so that nobody is told to reconstruct them.
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "scan.psx", ""));
+  EXPECT_EQ(error(folder_).find("reconstruct the poses first"), std::string::npos);
+  EXPECT_NE(error(folder_).find("scan.psx is a project of Metashape"), std::string::npos);
+  EXPECT_NE(error(folder_ / "scan.psx").find("File > Export > Export Cameras"), std::string::npos);
+}
+
 TEST_F(OpenLightFieldTest, SaysWhatItLookedFor) {
   const auto error = [](const fs::path& path) {
     const Result<LightField> light_field = OpenLightField(path);

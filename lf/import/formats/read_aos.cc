@@ -14,7 +14,7 @@
 #include "lf/core/file.h"
 #include "lf/core/log.h"
 #include "lf/core/parse_number.h"
-#include "lf/import/formats/import_limits.h"
+#include "lf/import/exports/import_limits.h"
 #include "lf/light_field/model/find_images.h"
 #include "lf/light_field/model/image_files.h"
 #include "lf/light_field/model/rotation.h"

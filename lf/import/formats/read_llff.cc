@@ -12,7 +12,7 @@
 
 #include "lf/core/file.h"
 #include "lf/core/parse_number.h"
-#include "lf/import/formats/import_limits.h"
+#include "lf/import/exports/import_limits.h"
 #include "lf/import/formats/npy.h"
 #include "lf/light_field/model/distinct_intrinsics.h"
 #include "lf/light_field/model/find_images.h"

@@ -16,7 +16,7 @@
 
 #include "lf/core/log.h"
 #include "lf/core/shell_word.h"
-#include "lf/import/formats/import_limits.h"
+#include "lf/import/exports/import_limits.h"
 #include "lf/import/formats/stanford_name.h"
 #include "lf/light_field/model/distinct_intrinsics.h"
 #include "lf/pixels/files/image_file.h"

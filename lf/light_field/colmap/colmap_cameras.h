@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The camera models of COLMAP. Internal to this folder.
+// The camera models of COLMAP. Used by the readers of models, and of kapture.
 #pragma once
 
 #include <cstdint>

@@ -20,6 +20,7 @@ constexpr NumberRule kOmega = {"the lens's field of view in radians, above 0 and
                                [](double x) { return x >= 0 && x < 3.1415; }};
 
 constexpr const char* kRadialTangentialKeys[] = {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
+constexpr const char* kBrownKeys[] = {"k1", "k2", "p1", "p2", "k3", "k4"};
 constexpr const char* kFisheyeKeys[] = {"k1", "k2", "k3", "k4"};
 constexpr const char* kOmegaKey = "lf_fov_omega";
 constexpr const char* kDivisionKeys[] = {"k1"};
@@ -55,6 +56,7 @@ constexpr CameraModelName kModels[] = {
     {"EUCM", DistortionModel::kUnified, 2},
     {"THIN_PRISM_FISHEYE", DistortionModel::kThinPrism, 8},
     {"RAD_TAN_THIN_PRISM_FISHEYE", DistortionModel::kRadialTangentialThinPrism, 12},
+    {"BROWN", DistortionModel::kBrown, 6},
 };
 
 const CameraModelName& ModelNamed(std::string_view name) {
@@ -91,12 +93,12 @@ Error SurplusParameter(const CameraModelName& model, std::string_view key, doubl
                        const JsonFields& fields) {
   const bool is_open_cv = std::string_view(model.name) == "OPENCV";
   if (is_open_cv && key == "k4")
-    return fields.Fault(
-        fmt::format("\"k4\" is {}, which is ambiguous with the camera model OPENCV: nerfstudio "
-                    "uses k4 as the coefficient of r^8, OpenCV as a coefficient of the "
-                    "denominator. For OpenCV's k4, state \"camera_model\": \"FULL_OPENCV\" (for a "
-                    "fish-eye lens OPENCV_FISHEYE); for any other, undistort the images first",
-                    value));
+    return fields.Fault(fmt::format(
+        "\"k4\" is {}, which is ambiguous with the camera model OPENCV: nerfstudio "
+        "uses k4 as the coefficient of r^8, OpenCV as a coefficient of the "
+        "denominator. For nerfstudio's k4, state \"camera_model\": \"BROWN\", for OpenCV's "
+        "\"FULL_OPENCV\" (for a fish-eye lens \"OPENCV_FISHEYE\")",
+        value));
   return fields.Fault(
       fmt::format("\"{}\" is {}, but \"camera_model\": \"{}\" has no such parameter: expected 0, "
                   "or remove the key{}",
@@ -110,6 +112,8 @@ std::span<const char* const> ParameterKeys(DistortionModel model) {
   switch (model) {
     case DistortionModel::kRadialTangential:
       return kRadialTangentialKeys;
+    case DistortionModel::kBrown:
+      return kBrownKeys;
     case DistortionModel::kFisheye:
       return kFisheyeKeys;
     case DistortionModel::kFov:
@@ -151,6 +155,8 @@ CameraModelName CameraModelOf(const Distortion& distortion) {
       return ModelNamed("THIN_PRISM_FISHEYE");
     case DistortionModel::kRadialTangentialThinPrism:
       return ModelNamed("RAD_TAN_THIN_PRISM_FISHEYE");
+    case DistortionModel::kBrown:
+      return ModelNamed("BROWN");
   }
   return ModelNamed("PINHOLE");
 }
@@ -199,7 +205,7 @@ Result<Distortion> ResolveDistortion(const DistortionKeys& frame, const Distorti
     return Distortion{};
   const auto is_zero = [](double x) { return x == 0; };
   if ((model.model == DistortionModel::kRadialTangential ||
-       model.model == DistortionModel::kDivision) &&
+       model.model == DistortionModel::kBrown || model.model == DistortionModel::kDivision) &&
       std::all_of(distortion.parameters.begin(), distortion.parameters.end(), is_zero))
     return Distortion{};
   return distortion;

@@ -26,7 +26,7 @@ struct CameraModelName {
 };
 
 // Returns the name with which a distortion is written: PINHOLE, OPENCV, FULL_OPENCV,
-// OPENCV_FISHEYE, FOV, DIVISION, EUCM, THIN_PRISM_FISHEYE or RAD_TAN_THIN_PRISM_FISHEYE.
+// OPENCV_FISHEYE, FOV, DIVISION, EUCM, THIN_PRISM_FISHEYE, RAD_TAN_THIN_PRISM_FISHEYE or BROWN.
 // parameter_count is the number of parameters to write; OPENCV has k3 only if it is not 0.
 CameraModelName CameraModelOf(const Distortion& distortion);
 

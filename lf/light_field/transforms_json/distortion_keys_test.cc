@@ -44,6 +44,9 @@ TEST(DistortionKeys, EveryCameraModelPutsItsParametersInTheirPlaces) {
             (Distortion{kRadialTangential, {1, 2, 7, 8, 3, 4, 5, 6}}));
   EXPECT_EQ(LensOf(R"("camera_model": "OPENCV", "k1": 1, "k2": 2, "k3": 3, "p1": 7, "p2": 8, )"),
             (Distortion{kRadialTangential, {1, 2, 7, 8, 3, 0, 0, 0}}));
+  EXPECT_EQ(LensOf(R"("camera_model": "BROWN", "k1": 1, "k2": 2, "k3": 3, "k4": 4, "p1": 7,
+                      "p2": 8, )"),
+            (Distortion{kBrown, {1, 2, 7, 8, 3, 4}}));
   EXPECT_EQ(LensOf(R"("camera_model": "RADIAL", "k1": 1, "k2": 2, )"),
             (Distortion{kRadialTangential, {1, 2}}));
   EXPECT_EQ(LensOf(R"("camera_model": "SIMPLE_RADIAL", "k1": 1, )"),
@@ -84,6 +87,7 @@ TEST(DistortionKeys, ZerosAreNoDistortionButForAFisheye) {
   EXPECT_EQ(LensOf(""), Distortion{});
   EXPECT_EQ(LensOf(R"("camera_model": "OPENCV", "k1": 0, "k2": -0.0, "p1": null, )"), Distortion{});
   EXPECT_EQ(LensOf(R"("camera_model": "FULL_OPENCV", )"), Distortion{});
+  EXPECT_EQ(LensOf(R"("camera_model": "BROWN", )"), Distortion{});
   EXPECT_EQ(LensOf(R"("camera_model": "OPENCV_FISHEYE", "k1": 0, )"), (Distortion{kFisheye, {}}));
   EXPECT_EQ(LensOf(R"("is_fisheye": true, )"), (Distortion{kFisheye, {}}));
 }
@@ -106,7 +110,7 @@ TEST(DistortionKeys, AFrameOverridesTheTopLevelKeyByKey) {
 TEST(DistortionKeys, K4WithOpenCvIsAmbiguous) {
   for (const char* model : {"", R"("camera_model": "OPENCV", )"})
     ExpectLensError(std::string(model) + R"("k4": 0.01, )", "",
-                    {"\"k4\" is 0.01", "ambiguous", "FULL_OPENCV", "undistort"});
+                    {"\"k4\" is 0.01", "ambiguous", "FULL_OPENCV", "BROWN"});
 }
 
 TEST(DistortionKeys, ParametersThatTheModelLacksAreErrors) {

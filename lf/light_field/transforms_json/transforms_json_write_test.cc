@@ -116,6 +116,8 @@ TEST_F(WriteTransformsJsonTest, KeepsEveryLensAndSkewWhicheverComesFirst) {
       {DistortionModel::kRadialTangential, {0, 0, 0, 0, 0.3, 0, 0, 0}},
       {DistortionModel::kRadialTangential, {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8}},
       {DistortionModel::kRadialTangential, {0, 0, 0, 0, 0, 0, 0.7, 0}},
+      {DistortionModel::kBrown, {0.1, 1.0 / 3, 1e-3, -1e-4, 0.3, -0.7}},
+      {DistortionModel::kBrown, {0, 0, 0, 0, 0, 0.7}},
       {DistortionModel::kFisheye, {0.1 + 0.2, 0, -0.01, 0.007, 0, 0, 0, 0}},
       {DistortionModel::kFisheye, {}},
       {DistortionModel::kFov, {2.0 / 3, 0, 0, 0, 0, 0, 0, 0}},

@@ -17,7 +17,8 @@ namespace {
 // Name of each DistortionModel in the table of intrinsics, in the order of the enumeration.
 constexpr const char* kModelNames[] = {
     "none",     "radial_tangential", "fisheye",    "fov",
-    "division", "unified",           "thin_prism", "radial_tangential_thin_prism"};
+    "division", "unified",           "thin_prism", "radial_tangential_thin_prism",
+    "brown"};
 // Name of each Transfer in the setting "transfer", in the order of the enumeration.
 constexpr const char* kTransferNames[] = {"srgb", "linear", "response"};
 

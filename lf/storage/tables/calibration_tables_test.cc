@@ -47,6 +47,7 @@ TEST_F(CalibrationTablesTest, EveryLensIsReadAsItWasWritten) {
        {Distortion{}, Distortion{kRadialTangential, {0.1, 1.0 / 3, 1e-3, 2e-3, 5, 6, 7, 8}},
         Distortion{kFisheye, {0.1}}, Distortion{kFov, {0.9}}, Distortion{kDivision, {-0.1}},
         Distortion{kUnified, {0.5, 2}}, Distortion{kThinPrism, {1, 2, 3, 4, 5, 6, 7, 2.0 / 3}},
+        Distortion{kBrown, {1, 2, 3, 4, 5, 2.0 / 3}},
         Distortion{kRadialTangentialThinPrism, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 2.0 / 3}}})
     written.push_back({500, 501, 320, 240, 0.5, 640, 480, lens});
   ASSERT_TRUE(WriteIntrinsics(written, &*database_));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names and limits that the readers of all formats share. Internal to this folder.
+// Names and limits that the readers of all formats share. Internal to import/exports and
+// import/formats.
 #pragma once
 
 #include <cstddef>

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parses any bytes as a reconstruction.json of OpenSfM: the result must be valid cameras or an
+// error.
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "lf/import/exports/fuzz_exports.h"
+#include "lf/import/exports/read_opensfm.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size_bytes) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes), size_bytes);
+  lf::CheckExport(lf::ParseOpenSfm(text, "f/reconstruction.json"));
+  return 0;
+}
