@@ -21,7 +21,9 @@ Result<std::array<int, 2>> ImageSizeInHeader(const fs::path& image) {
 
 bool IsImageName(std::string_view file_name) {
   if (IsRawName(std::string(file_name))) return true;
-  constexpr std::string_view kExtensions[] = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr"};
+  constexpr std::string_view kExtensions[] = {
+      ".png",  ".jpg", ".jpeg", ".tif", ".tiff", ".exr", ".webp", ".jxl", ".heic", ".heif",
+      ".avif", ".jp2", ".j2k",  ".bmp", ".ppm",  ".pgm", ".pbm",  ".pnm", ".pam",  ".hdr"};
   std::string extension = fs::path(file_name).extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return std::find(std::begin(kExtensions), std::end(kExtensions), extension) !=

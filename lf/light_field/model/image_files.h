@@ -20,8 +20,9 @@ using ImageSizeSource = std::function<Result<std::array<int, 2>>(const std::file
 // pixels/files).
 Result<std::array<int, 2>> ImageSizeInHeader(const std::filesystem::path& image);
 
-// Returns true for the extensions png, jpg, jpeg, tif, tiff, exr (in upper or lower case), and for
-// raw files, as IsRawName() says.
+// Returns true for the extensions of the formats that ReadImage() reads (in upper or lower case),
+// and for raw files, as IsRawName() says. PFM files are not looked for, because they are mostly
+// depths that lie beside the images.
 bool IsImageName(std::string_view file_name);
 
 // Returns the names of the image files in a folder, sorted by bytes, without hidden files. kInput

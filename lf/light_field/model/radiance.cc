@@ -109,7 +109,7 @@ double DefaultMaxRadiance(std::span<const std::string> image_names) {
   const auto is_float_file = [](const std::string& name) {
     std::string extension = std::filesystem::path(name).extension().string();
     for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return extension == ".exr" || extension == ".hdr";
+    return extension == ".exr" || extension == ".hdr" || extension == ".pfm";
   };
   return std::any_of(image_names.begin(), image_names.end(), is_float_file) ? kFloatMaxRadiance : 1;
 }

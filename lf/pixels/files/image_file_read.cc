@@ -34,6 +34,22 @@ Result<std::unique_ptr<PictureDecoder>> Open(const FileBytes& file, ImageFormat 
       return OpenTiff(file);
     case ImageFormat::kExr:
       return OpenExr(file);
+    case ImageFormat::kNetpbm:
+      return OpenNetpbm(file);
+    case ImageFormat::kPfm:
+      return OpenPfm(file);
+    case ImageFormat::kBmp:
+      return OpenBmp(file);
+    case ImageFormat::kRadiance:
+      return OpenRadiance(file);
+    case ImageFormat::kWebp:
+      return OpenWebp(file);
+    case ImageFormat::kJpeg2000:
+      return OpenJpeg2000(file);
+    case ImageFormat::kJpegXl:
+      return OpenJpegXl(file);
+    case ImageFormat::kHeif:
+      return OpenHeif(file);
     case ImageFormat::kJpeg:
     case ImageFormat::kRaw:
       break;
@@ -98,6 +114,11 @@ Result<std::string> ProfileFrom(const FileBytes& file) {
 
 Result<ExposureFacts> ExposureFrom(const FileBytes& file) {
   LF_ASSIGN_OR_RETURN(const ImageFormat format, ProbeImage(file.read, file.name));
+  if (format == ImageFormat::kWebp || format == ImageFormat::kHeif) {
+    LF_ASSIGN_OR_RETURN(const std::unique_ptr<PictureDecoder> picture, Open(file, format));
+    const std::string exif = picture->Exif();
+    return ExposureOfExif(FileInMemory(exif, file.name).read, ImageFormat::kTiff);
+  }
   if (format != ImageFormat::kRaw) return ExposureOfExif(file.read, format);
   LF_ASSIGN_OR_RETURN(const RawReader raw, RawReader::Open(file.read, file.size_bytes, file.name));
   return raw.exposure();
@@ -147,9 +168,9 @@ Result<void> PartFrom(const FileBytes& file, const WantedPixels& wanted, ImagePa
   LF_ASSIGN_OR_RETURN(const std::unique_ptr<PictureDecoder> picture, OpenSingle(file, format));
   part->info = picture->info();
   part->icc_profile = picture->IccProfile();
-  if (const auto rect = wanted(part->info); !rect) return rect.error();
-  part->rect = {0, 0, part->info.width, part->info.height};
-  return picture->Read(&part->image);
+  LF_ASSIGN_OR_RETURN(const PixelRect rect, wanted(part->info));
+  LF_ASSIGN_OR_RETURN(part->rect, picture->ReadPart(rect, &part->image));
+  return {};
 }
 
 Result<PixelRect> All(const ImageFileInfo& info) {

@@ -13,8 +13,8 @@
 
 namespace lf {
 
-// Reads PNG, JPEG, TIFF, EXR and camera raw files (pixels/files/image_file.h) and converts their
-// values to radiance as LightField::encoding says:
+// Reads image files of every format (pixels/files/image_file.h) and converts their values to
+// radiance as LightField::encoding says:
 //   - Integers of 8 or 16 bits are converted by a table (RadianceTables). Floats are radiance
 //     already, and are quantised.
 //   - With a Bayer pattern, a file has one channel. The store returns it as a mosaic, or as RGB
