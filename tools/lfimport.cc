@@ -60,7 +60,8 @@ struct Arguments {
   lf::LightFieldArgument light_field;
   std::string output, pitch, transform, bayer, masks, check = "headers";
   double plane_distance = 0, scale = 1, unit_m = 0, distance = 0;
-  bool flip_x = false, flip_y = false, force = false;
+  bool flip_x = false, flip_y = false, is_serpentine = false, force = false;
+  std::pair<int, int> grid = {0, 0};
   std::string repair;
   std::vector<std::string> exclude;
   lf::AllowMissing allow_missing;
@@ -189,6 +190,20 @@ void AddNamedImages(CLI::App& app, Arguments& a) {
            "scene are at the same pixels in all images. 0: the images are not rectified; the "
            "cameras look in parallel directions.")
       ->check(CLI::NonNegativeNumber);
+  CLI::Option* const grid =
+      named
+          .Add("--grid COLUMNSxROWS", a.grid,
+               "The images are those of a grid, in the order of their names\n"
+               "For folders whose names do not tell rows and columns. Numbers in names count by "
+               "their value. The first image is that of the upper left LF camera; rows follow each "
+               "other.")
+          ->delimiter('x')
+          ->check(CLI::PositiveNumber)
+          ->default_str("");
+  named
+      .AddFlag("--serpentine", a.is_serpentine,
+               "Every second row of --grid runs from right to left")
+      ->needs(grid);
   named.AddFlag("--flip-x", a.flip_x, "Image names count columns from right to left");
   named.AddFlag("--flip-y", a.flip_y, "Image names count rows from bottom to top");
 }
@@ -216,7 +231,7 @@ lf::Result<lf::Vec2> ParsePitch(const std::string& text) {
 bool WritesAgain(const Arguments& a) {
   std::error_code error;
   return !a.output.empty() && std::filesystem::equivalent(a.light_field.path, a.output, error) &&
-         lf::HoldsOwnAndItsSource(a.light_field.path);
+         lf::HoldsOwnAndItsSource(a.light_field.path, a.grid.first > 0);
 }
 
 // Returns the command of this call with options added, and with -o, if the call does not have it.
@@ -232,6 +247,8 @@ lf::Result<lf::OpenOptions> MakeOpenOptions(const Arguments& a) {
   if (!a.pitch.empty()) {
     LF_ASSIGN_OR_RETURN(options.pitch_w, ParsePitch(a.pitch));
   }
+  if (a.grid.first > 0) options.grid = {a.grid.first, a.grid.second};
+  options.is_serpentine = a.is_serpentine;
   if (a.plane_distance > 0) options.plane_distance_w = a.plane_distance;
   options.flip_x = a.flip_x;
   options.flip_y = a.flip_y;
@@ -322,10 +339,10 @@ std::string AdviceOnFaults(const Arguments& a, const lf::LightField& light_field
 
 // Returns true if the call only reports, so that other programs see the light field as it does.
 bool OnlyReports(const Arguments& a) {
-  return a.output.empty() && a.pitch.empty() && a.plane_distance == 0 && !a.flip_x && !a.flip_y &&
-         a.transform.empty() && a.scale == 1 && a.unit_m == 0 && a.bayer.empty() &&
-         a.masks.empty() && a.repair.empty() && a.exclude.empty() && !a.exposure.match &&
-         !a.exposure.gain_from_exif && !a.exposure.mask_clipped;
+  return a.output.empty() && a.pitch.empty() && a.grid.first == 0 && a.plane_distance == 0 &&
+         !a.flip_x && !a.flip_y && a.transform.empty() && a.scale == 1 && a.unit_m == 0 &&
+         a.bayer.empty() && a.masks.empty() && a.repair.empty() && a.exclude.empty() &&
+         !a.exposure.match && !a.exposure.gain_from_exif && !a.exposure.mask_clipped;
 }
 
 // Returns the line that advises to make a path; "" if images and poses do not agree, if a path

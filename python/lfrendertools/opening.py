@@ -16,7 +16,8 @@ _ALPHAS = ("auto", "mask", "straight", "premultiplied")
 def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[float] = None,
          images: Optional[FilePath] = None, image_scale: str = "auto", image_alpha: str = "auto",
          background: str = "", pitch: Union[None, float, Tuple[float, float]] = None,
-         plane_distance: Optional[float] = None, flip_x: bool = False, flip_y: bool = False) -> LightField:
+         plane_distance: Optional[float] = None, flip_x: bool = False, flip_y: bool = False,
+         grid: Optional[Tuple[int, int]] = None, serpentine: bool = False) -> LightField:
     """Open a light field of any supported form.
 
     Parameters
@@ -38,6 +39,11 @@ def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[
         For folders with Stanford names: distance, in world units, of the plane to which the images are rectified.
     flip_x, flip_y : bool, optional
         For folders with Stanford names: True if columns or rows are counted in the opposite direction.
+    grid : tuple of int, optional
+        For folders of images with any names: columns and rows of the LF cameras, whose images follow each other in the
+        order of their names (numbers by their value), row by row from the upper left one on.
+    serpentine : bool, optional
+        True if every second row of `grid` runs from right to left.
 
     Returns
     -------
@@ -64,6 +70,9 @@ def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[
     if pitch is not None:
         pair = arguments.numbers("pitch", pitch if hasattr(pitch, "__len__") else (pitch, pitch), 2, 2)
         pitch = (pair[0], pair[1])
+    if grid is not None:
+        sides = arguments.whole_numbers("grid", grid, 2)
+        grid = (sides[0], sides[1])
     core = _core.open_light_field(
         os.fsencode(source), 0.0 if focal_px is None else arguments.positive("focal_px", focal_px),
         0.0 if fov_deg is None else arguments.positive("fov_deg", fov_deg),
@@ -71,7 +80,8 @@ def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[
         arguments.text("image_scale", image_scale), arguments.choice("image_alpha", image_alpha, _ALPHAS),
         arguments.text("background", background), pitch,
         None if plane_distance is None else arguments.real("plane_distance", plane_distance),
-        (arguments.flag("flip_x", flip_x), arguments.flag("flip_y", flip_y)))
+        grid,
+        (arguments.flag("flip_x", flip_x), arguments.flag("flip_y", flip_y), arguments.flag("serpentine", serpentine)))
     return LightField(core, source)
 
 

@@ -46,7 +46,8 @@ std::shared_ptr<OpenedField> Open(const std::string& path, double focal_px, doub
                                   const std::string& image_alpha, const std::string& background,
                                   const std::optional<std::array<double, 2>>& pitch,
                                   std::optional<double> plane_distance,
-                                  const std::array<bool, 2>& flips) {
+                                  const std::optional<std::array<int, 2>>& grid,
+                                  const std::array<bool, 3>& flips) {
   LightFieldWords words;
   words.focal_px = focal_px;
   words.fov_deg = fov_deg;
@@ -61,6 +62,8 @@ std::shared_ptr<OpenedField> Open(const std::string& path, double focal_px, doub
     options.plane_distance_w = plane_distance;
     options.flip_x = flips[0];
     options.flip_y = flips[1];
+    options.grid = grid;
+    options.is_serpentine = flips[2];
     field->light_field = Take(OpenLightField(path, options));
     field->store = Take(OpenStore(field->light_field, Mosaics::kToRgb));
     field->options = words.WordsToKeep();

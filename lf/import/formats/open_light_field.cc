@@ -42,6 +42,7 @@ constexpr const char* kAosName = "poses.json";
 std::string_view StanfordOptionOf(const OpenOptions& options) {
   if (options.focal_px) return "{focal_px}";
   if (options.pitch_w) return "{pitch}";
+  if (options.grid) return "{grid}";
   if (options.plane_distance_w) return "{plane_distance}";
   if (options.flip_x) return "{flip_x}";
   if (options.flip_y) return "{flip_y}";
@@ -182,7 +183,9 @@ Result<LightField> OpenStanford(const fs::path& folder, const OpenOptions& optio
   LF_RETURN_IF_ERROR(CheckNoFov(folder, options));
   LF_RETURN_IF_ERROR(CheckNoImagesFolder(folder, options));
   LogDebug("{}: opened as images with Stanford names", folder.string());
-  return ReadStanfordFolder(folder, {.focal_px = options.focal_px,
+  return ReadStanfordFolder(folder, {.grid = options.grid,
+                                     .is_serpentine = options.is_serpentine,
+                                     .focal_px = options.focal_px,
                                      .pitch_w = options.pitch_w,
                                      .plane_distance_w = options.plane_distance_w,
                                      .flip_x = options.flip_x,
@@ -325,7 +328,8 @@ std::string PhotographsIn(const fs::path& path) {
       return fmt::format(
           "; {} holds {}{} images, such as {}, but no file with the poses of the cameras: "
           "reconstruct the poses first, for instance with COLMAP (colmap automatic_reconstructor), "
-          "which writes sparse/0",
+          "which writes sparse/0; or, if a regular grid of cameras recorded them in the order of "
+          "their names, give its columns and rows ({{lfimport grid}})",
           folder.string(), entry_count > kMostEntries ? "at least " : "", count, first);
   }
   return "";
@@ -346,6 +350,11 @@ std::string LightFieldsBelow(const fs::path& folder) {
   std::sort(names.begin(), names.end());
   return fmt::format("; but there is a light field in {}/: {}", fmt::join(names, "/, "),
                      ShellCommand({"lfimport", FileArgument(folder / names[0])}));
+}
+
+bool HoldsImages(const fs::path& folder) {
+  const Result<std::vector<std::string>> names = SortedImageNames(folder);
+  return names && !names->empty();
 }
 
 bool HoldsGrid(const fs::path& folder) {
@@ -371,8 +380,8 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
                     path.string()));
   }
   // Options that only names need ask for the names.
-  const bool passes_over =
-      (options.passes_over_own || !StanfordOptionOf(options).empty()) && HoldsOwnAndItsSource(path);
+  const bool passes_over = (options.passes_over_own || !StanfordOptionOf(options).empty()) &&
+                           HoldsOwnAndItsSource(path, options.grid.has_value());
   if (passes_over)
     LogInfo("{}: was written by lfimport: the calibration from which it was made is read instead",
             (path / kCalibrationName).string());
@@ -394,7 +403,8 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
   std::string series;
   for (const fs::path& folder : {path, path / kImagesName}) {
     const StanfordNames names = FindStanfordNames(folder);
-    if (names == StanfordNames::kGrid || (names == StanfordNames::kSeries && options.pitch_w))
+    if (names == StanfordNames::kGrid || (names == StanfordNames::kSeries && options.pitch_w) ||
+        (options.grid && HoldsImages(folder)))
       return OpenStanford(folder, options, path);
     if (names == StanfordNames::kSeries)
       series = fmt::format(
@@ -446,13 +456,14 @@ bool HoldsLightField(const fs::path& folder) {
          !PackedStoresIn(folder).empty();
 }
 
-bool HoldsOwnAndItsSource(const fs::path& folder) {
+bool HoldsOwnAndItsSource(const fs::path& folder, bool has_grid) {
   std::error_code error;
   if (!fs::exists(folder / kCalibrationName, error)) return false;
   const Result<bool> is_own = IsAsWritten(folder / kCalibrationName, kImportProgram);
   if (!is_own || !*is_own) return false;
   const Result<std::optional<fs::path>> model = FindColmapModel(folder);
   if (model && *model) return true;
+  if (has_grid && (HoldsImages(folder) || HoldsImages(folder / kImagesName))) return true;
   const Result<std::optional<fs::path>> other = OtherCalibrationIn(folder);
   return (other && *other) || !SplitsIn(folder).empty() || HoldsGrid(folder);
 }

@@ -21,6 +21,8 @@ struct OpenOptions {
   // options for the others.
   std::optional<double> focal_px = {};
   std::optional<Vec2> pitch_w = {};
+  std::optional<std::array<int, 2>> grid = {};
+  bool is_serpentine = false;
   std::optional<double> plane_distance_w = {};
   bool flip_x = false;
   bool flip_y = false;
@@ -60,7 +62,9 @@ bool HoldsLightField(const std::filesystem::path& folder);
 
 // Returns true if the folder holds both a transforms.json that lfimport wrote and nobody changed,
 // and a calibration of another form, from which it may have been made.
-bool HoldsOwnAndItsSource(const std::filesystem::path& folder);
+//   has_grid  true: images of any names are such a calibration, because OpenOptions::grid orders
+//   them
+bool HoldsOwnAndItsSource(const std::filesystem::path& folder, bool has_grid = false);
 
 // Opens a calibration file, or the first of these that it finds in a folder:
 // - transforms.json, or any .json file without M3x4 matrices:

@@ -15,10 +15,12 @@
 #include <vector>
 
 #include "lf/core/log.h"
+#include "lf/core/natural_order.h"
 #include "lf/core/shell_word.h"
 #include "lf/import/formats/import_limits.h"
 #include "lf/import/formats/stanford_name.h"
 #include "lf/light_field/model/distinct_intrinsics.h"
+#include "lf/light_field/model/image_files.h"
 #include "lf/pixels/files/image_file.h"
 
 namespace lf {
@@ -64,6 +66,28 @@ void TakeNumberedGrid(Listing* listing) {
   }
   listing->images = std::move(images);
   listing->others = std::move(others);
+}
+
+// Lists all images of a folder in the order of their names, as those of a grid.
+Result<Listing> ListGrid(const fs::path& folder, const StanfordOptions& options) {
+  LF_ASSIGN_OR_RETURN(std::vector<std::string> names, SortedImageNames(folder));
+  std::stable_sort(names.begin(), names.end(), NaturallyLess);
+  const auto [columns, rows] = *options.grid;
+  const size_t expected = static_cast<size_t>(columns) * static_cast<size_t>(rows);
+  if (names.size() != expected)
+    return InputError(fmt::format(
+        "{}: holds {} images{}, but {{lfimport grid}} is {} x {}, which are {}: move other images "
+        "away, or correct columns and rows",
+        folder.string(), names.size(), names.empty() ? "" : ", the first of which is " + names[0],
+        columns, rows, expected));
+  Listing listing;
+  for (size_t i = 0; i < names.size(); ++i) {
+    const int row = static_cast<int>(i) / columns, along = static_cast<int>(i) % columns;
+    const bool is_backward = options.is_serpentine && row % 2 == 1;
+    listing.images.push_back(
+        {names[i], {row, is_backward ? columns - 1 - along : along, std::nullopt, std::nullopt}});
+  }
+  return listing;
 }
 
 Result<Listing> ListFolder(const fs::path& folder) {
@@ -124,6 +148,9 @@ double SpacingOf(const std::vector<StanfordImage>& images, const StanfordOptions
 std::string ImportCommand(const fs::path& folder, const std::vector<StanfordImage>& images,
                           const StanfordOptions& options, bool needs_pitch, int width_px) {
   std::vector<std::string> missing;
+  if (options.grid && !options.import_again)
+    missing = {"--grid", fmt::format("{}x{}", (*options.grid)[0], (*options.grid)[1])};
+  if (options.is_serpentine && !options.import_again) missing.push_back("--serpentine");
   if (needs_pitch && !(options.pitch_w && options.import_again)) {
     const Vec2 pitch_w = options.pitch_w.value_or(Vec2(1, 1));
     missing.insert(missing.end(), {"--pitch", fmt::format("{},{}", pitch_w.x(), pitch_w.y())});
@@ -164,6 +191,10 @@ Result<void> CheckOptions(const StanfordOptions& options) {
     return UsageError(
         fmt::format("the pitch ({{pitch}}) is {}, {} world units: expected above 0 and at most 1e9",
                     pitch_w.x(), pitch_w.y()));
+  if (options.grid && std::min((*options.grid)[0], (*options.grid)[1]) < 1)
+    return UsageError(
+        fmt::format("the grid ({{grid}}) has {} columns and {} rows: expected at least 1 of each",
+                    (*options.grid)[0], (*options.grid)[1]));
   if (!is_length(options.plane_distance_w.value_or(1)))
     return UsageError(
         fmt::format("the plane distance ({{plane_distance}}) is {} world units: expected above 0 "
@@ -177,12 +208,12 @@ Result<void> CheckComplete(const fs::path& folder, const std::vector<StanfordIma
                            const StanfordOptions& options, int width_px) {
   if (!options.pitch_w && !images[0].name.position)
     return InputError(fmt::format(
-        "{}: the names contain row and column, but neither positions nor the focal length ({}): "
+        "{}: the names {}, but neither positions nor the focal length ({}): "
         "state the pitch and the focal length, and {{plane_distance}} if the images may be "
         "rectified "
         "to one plane, for instance by: {}",
-        folder.string(), images[0].file_name,
-        ImportCommand(folder, images, options, true, width_px)));
+        folder.string(), options.grid ? "follow the order of the grid" : "contain row and column",
+        images[0].file_name, ImportCommand(folder, images, options, true, width_px)));
   if (options.focal_px) return {};
   const auto lacks_lens = [](const StanfordImage& image) { return !image.name.lens; };
   const auto without = std::find_if(images.begin(), images.end(), lacks_lens);
@@ -271,7 +302,8 @@ StanfordNames FindStanfordNames(const fs::path& folder) {
 
 Result<LightField> ReadStanfordFolder(const fs::path& folder, const StanfordOptions& options) {
   LF_RETURN_IF_ERROR(CheckOptions(options));
-  LF_ASSIGN_OR_RETURN(const Listing listing, ListFolder(folder));
+  LF_ASSIGN_OR_RETURN(const Listing listing,
+                      options.grid ? ListGrid(folder, options) : ListFolder(folder));
   LF_RETURN_IF_ERROR(CheckPlaces(folder, listing.images));
   LF_ASSIGN_OR_RETURN(const ImageFileInfo info,
                       ReadImageInfo(folder / listing.images[0].file_name));

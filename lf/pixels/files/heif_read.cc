@@ -166,7 +166,9 @@ class HeifDecoder : public PictureDecoder {
  private:
   Error Damaged(const heif_error& error) const {
     const std::string_view reason = error.message == nullptr ? "" : error.message;
-    if (error.code == heif_error_Memory_allocation_error) throw std::bad_alloc();
+    if (error.code == heif_error_Memory_allocation_error &&
+        error.subcode != heif_suberror_Security_limit_exceeded)
+      return OutputError(fmt::format("{}: cannot be read: libheif lacks memory", file_.name));
     if (error.code == heif_error_Unsupported_feature ||
         error.code == heif_error_Unsupported_filetype)
       return InputError(fmt::format(
