@@ -10,6 +10,7 @@ from . import _core, arguments
 from .arguments import FilePath
 from .light_field import LightField
 
+_LAYOUTS = ("", "mosaic", "quilt", "lenslets")
 _ALPHAS = ("auto", "mask", "straight", "premultiplied")
 
 
@@ -17,14 +18,14 @@ def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[
          images: Optional[FilePath] = None, image_scale: str = "auto", image_alpha: str = "auto",
          background: str = "", pitch: Union[None, float, Tuple[float, float]] = None,
          plane_distance: Optional[float] = None, flip_x: bool = False, flip_y: bool = False,
-         grid: Optional[Tuple[int, int]] = None, serpentine: bool = False) -> LightField:
+         grid: Optional[Tuple[int, int]] = None, serpentine: bool = False, layout: str = "") -> LightField:
     """Open a light field of any supported form.
 
     Parameters
     ----------
     path : path
         A calibration file or its folder (transforms.json, COLMAP, Middlebury, LLFF, HCI, AOS), a packed store
-        (STORE.lfs), or a folder of images with Stanford names.
+        (STORE.lfs), a folder of images with Stanford names, or a picture that holds the views of a grid of cameras.
     focal_px : float, optional
         Focal length in pixels, for folders with Stanford names.
     fov_deg : float, optional
@@ -44,6 +45,8 @@ def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[
         order of their names (numbers by their value), row by row from the upper left one on.
     serpentine : bool, optional
         True if every second row of `grid` runs from right to left.
+    layout : str, optional
+        How one picture holds the views of `grid`: "mosaic", "quilt" or "lenslets". "": as its name says, or a mosaic.
 
     Returns
     -------
@@ -80,7 +83,7 @@ def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[
         arguments.text("image_scale", image_scale), arguments.choice("image_alpha", image_alpha, _ALPHAS),
         arguments.text("background", background), pitch,
         None if plane_distance is None else arguments.real("plane_distance", plane_distance),
-        grid,
+        grid, arguments.choice("layout", layout, _LAYOUTS),
         (arguments.flag("flip_x", flip_x), arguments.flag("flip_y", flip_y), arguments.flag("serpentine", serpentine)))
     return LightField(core, source)
 

@@ -48,7 +48,9 @@ void LightFieldArgument::AddTo(CLI::App& app) {
            "Calibration file, its folder, or a packed store\n"
            "The calibration is a transforms.json, or a calibration of COLMAP, Middlebury, LLFF, "
            "HCI or AOS. A packed store is one file, STORE.lfs. A folder of images with Stanford "
-           "names is also a light field: the names contain the calibration.")
+           "names is also a light field: the names contain the calibration. lfimport also opens "
+           "other "
+           "folders of images, and pictures that hold many views.")
       ->required()
       ->check(NotEmpty());
   AddOptionsTo(app);

@@ -5,6 +5,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <fstream>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -14,6 +16,7 @@
 #include "lf/core/log.h"
 #include "lf/core/shell_word.h"
 #include "lf/import/formats/import_limits.h"
+#include "lf/import/formats/picture_grid.h"
 #include "lf/import/formats/read_aos.h"
 #include "lf/import/formats/read_hci.h"
 #include "lf/import/formats/read_llff.h"
@@ -43,6 +46,7 @@ std::string_view StanfordOptionOf(const OpenOptions& options) {
   if (options.focal_px) return "{focal_px}";
   if (options.pitch_w) return "{pitch}";
   if (options.grid) return "{grid}";
+  if (options.layout) return "{layout}";
   if (options.plane_distance_w) return "{plane_distance}";
   if (options.flip_x) return "{flip_x}";
   if (options.flip_y) return "{flip_y}";
@@ -178,20 +182,26 @@ Result<LightField> OpenColmap(const fs::path& model_folder, const OpenOptions& o
   return ReadColmapModel(model_folder, options.images_folder);
 }
 
+// Returns the options of a folder with Stanford names.
+//   asked_for  LIGHTFIELD as the user typed it
+StanfordOptions StanfordOptionsOf(const OpenOptions& options, const fs::path& asked_for) {
+  return {.grid = options.grid,
+          .is_serpentine = options.is_serpentine,
+          .focal_px = options.focal_px,
+          .pitch_w = options.pitch_w,
+          .plane_distance_w = options.plane_distance_w,
+          .flip_x = options.flip_x,
+          .flip_y = options.flip_y,
+          .asked_for = asked_for,
+          .import_again = options.import_again};
+}
+
 Result<LightField> OpenStanford(const fs::path& folder, const OpenOptions& options,
                                 const fs::path& asked_for) {
   LF_RETURN_IF_ERROR(CheckNoFov(folder, options));
   LF_RETURN_IF_ERROR(CheckNoImagesFolder(folder, options));
   LogDebug("{}: opened as images with Stanford names", folder.string());
-  return ReadStanfordFolder(folder, {.grid = options.grid,
-                                     .is_serpentine = options.is_serpentine,
-                                     .focal_px = options.focal_px,
-                                     .pitch_w = options.pitch_w,
-                                     .plane_distance_w = options.plane_distance_w,
-                                     .flip_x = options.flip_x,
-                                     .flip_y = options.flip_y,
-                                     .asked_for = asked_for,
-                                     .import_again = options.import_again});
+  return ReadStanfordFolder(folder, StanfordOptionsOf(options, asked_for));
 }
 
 // Completes the encoding after the calibration was read, which may state nothing about the
@@ -352,6 +362,40 @@ std::string LightFieldsBelow(const fs::path& folder) {
                      ShellCommand({"lfimport", FileArgument(folder / names[0])}));
 }
 
+// Returns true for a file of a Lytro camera (.lfr, .lfp).
+bool IsLytroFile(const fs::path& path) {
+  constexpr std::string_view kMagic = "\x89LFP\r\n\x1a\n";
+  std::string start(kMagic.size(), '\0');
+  std::ifstream file(path, std::ios::binary);
+  return file.read(start.data(), static_cast<std::streamsize>(start.size())) && start == kMagic;
+}
+
+// Opens a picture that holds the views of a grid of cameras.
+//   asked_for  the picture, or its folder, as the user typed it
+Result<LightField> OpenPicture(const fs::path& path, const OpenOptions& options,
+                               const fs::path& asked_for) {
+  std::optional<PictureGrid> grid = PictureGridOfName(path.filename().string());
+  if (options.layout && (!grid || grid->layout != *options.layout))
+    grid = PictureGrid{.layout = *options.layout, .grid = {0, 0}};
+  if (options.grid) {
+    if (!grid) grid.emplace();
+    grid->grid = *options.grid;
+  }
+  if (!grid || grid->grid[0] < 1 || grid->grid[1] < 1)
+    return InputError(fmt::format(
+        "{}: is a picture: if it holds the views of a grid of cameras, give their columns and rows "
+        "({{lfimport grid}}), and {{lfimport layout}} if they do not lie side by side",
+        path.string()));
+  LF_RETURN_IF_ERROR(CheckNoFov(path, options));
+  LF_RETURN_IF_ERROR(CheckNoImagesFolder(path, options));
+  LogDebug("{}: opened as a picture of {} x {} views ({})", path.string(), grid->grid[0],
+           grid->grid[1], NameOf(grid->layout));
+  StanfordOptions picture = StanfordOptionsOf(options, asked_for);
+  picture.picture = path.filename().string();
+  picture.picture_grid = *grid;
+  return ReadStanfordFolder(path.parent_path(), picture);
+}
+
 bool HoldsImages(const fs::path& folder) {
   const Result<std::vector<std::string>> names = SortedImageNames(folder);
   return names && !names->empty();
@@ -371,12 +415,18 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
     return InputError(fmt::format("{}: no such file or folder", path.string()));
   if (!fs::is_directory(status)) {
     if (std::optional<Result<LightField>> opened = OpenFile(path, options)) return *opened;
+    if (IsImageName(path.filename().string())) return OpenPicture(path, options, path);
+    if (IsLytroFile(path))
+      return InputError(fmt::format(
+          "{}: is a picture of a Lytro camera, which is not decoded here: decode it with "
+          "plenopticam or LFToolbox, which write folders of views",
+          path.string()));
     return InputError(
         fmt::format("{}: is not a light field: expected a transforms.json, a NAME_par.txt "
                     "(Middlebury), a poses_bounds.npy (LLFF), a parameters.cfg (4D Light Field "
                     "Benchmark), a poses.json (AOS), a packed store "
-                    "(STORE.lfs) or the folder of one, the folder of a COLMAP model, or a folder "
-                    "of images",
+                    "(STORE.lfs) or the folder of one, the folder of a COLMAP model, a folder of "
+                    "images, or a picture of many views",
                     path.string()));
   }
   // Options that only names need ask for the names.
@@ -402,6 +452,9 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
     return OpenSplits(splits, options);
   std::string series;
   for (const fs::path& folder : {path, path / kImagesName}) {
+    const bool is_any = options.layout || (options.grid && *options.grid != std::array{1, 1});
+    if (const std::optional<fs::path> picture = PictureOfViewsIn(folder, is_any))
+      return OpenPicture(*picture, options, path);
     const StanfordNames names = FindStanfordNames(folder);
     if (names == StanfordNames::kGrid || (names == StanfordNames::kSeries && options.pitch_w) ||
         (options.grid && HoldsImages(folder)))
@@ -464,6 +517,7 @@ bool HoldsOwnAndItsSource(const fs::path& folder, bool has_grid) {
   const Result<std::optional<fs::path>> model = FindColmapModel(folder);
   if (model && *model) return true;
   if (has_grid && (HoldsImages(folder) || HoldsImages(folder / kImagesName))) return true;
+  if (PictureOfViewsIn(folder, false)) return true;
   const Result<std::optional<fs::path>> other = OtherCalibrationIn(folder);
   return (other && *other) || !SplitsIn(folder).empty() || HoldsGrid(folder);
 }

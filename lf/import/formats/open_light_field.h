@@ -14,6 +14,8 @@
 
 namespace lf {
 
+enum class PictureLayout;  // import/formats/picture_grid.h
+
 struct OpenOptions {
   // focal_px to flip_y complete or override what the file names in a folder with Stanford names say
   // (StanfordOptions, import/formats/read_stanford.h). If one of them is set, opening a calibration
@@ -23,6 +25,7 @@ struct OpenOptions {
   std::optional<Vec2> pitch_w = {};
   std::optional<std::array<int, 2>> grid = {};
   bool is_serpentine = false;
+  std::optional<PictureLayout> layout = {};  // how one picture holds the views
   std::optional<double> plane_distance_w = {};
   bool flip_x = false;
   bool flip_y = false;
@@ -76,6 +79,9 @@ bool HoldsOwnAndItsSource(const std::filesystem::path& folder, bool has_grid = f
 // - poses.json, or any .json file with M3x4 matrices: import/formats/read_aos.h
 // - transforms_train.json, transforms_val.json and transforms_test.json: their union
 // - images with Stanford names, in the folder or its images/: import/formats/read_stanford.h
+// - a picture that holds the views of a grid of cameras, or a folder with one picture whose name
+// says
+//   so: import/formats/picture_grid.h
 // - STORE.lfs: storage/packed/packed_store_file.h
 // A file of a kind named after "or any" is opened only if `path` is the file itself. If the first
 // kind that is found in a folder is NAME_par.txt or STORE.lfs, two such files are an error. An

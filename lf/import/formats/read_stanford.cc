@@ -90,6 +90,25 @@ Result<Listing> ListGrid(const fs::path& folder, const StanfordOptions& options)
   return listing;
 }
 
+// Lists the views of a picture by the rows and columns of their cameras.
+Result<Listing> ListPicture(const fs::path& folder, const StanfordOptions& options) {
+  const PictureGrid& grid = options.picture_grid;
+  LF_ASSIGN_OR_RETURN(std::vector<ViewOfPicture> views,
+                      ViewsOfPicture(folder / options.picture, grid));
+  Listing listing;
+  for (ViewOfPicture& view : views) {
+    const bool is_backward = options.is_serpentine && view.row % 2 == 1;
+    const int column = is_backward ? grid.grid[0] - 1 - view.column : view.column;
+    listing.images.push_back(
+        {std::move(view.name), {view.row, column, std::nullopt, std::nullopt}});
+  }
+  std::sort(listing.images.begin(), listing.images.end(),
+            [](const StanfordImage& a, const StanfordImage& b) {
+              return std::tie(a.name.row, a.name.column) < std::tie(b.name.row, b.name.column);
+            });
+  return listing;
+}
+
 Result<Listing> ListFolder(const fs::path& folder) {
   Listing listing;
   std::error_code error;
@@ -151,6 +170,8 @@ std::string ImportCommand(const fs::path& folder, const std::vector<StanfordImag
   if (options.grid && !options.import_again)
     missing = {"--grid", fmt::format("{}x{}", (*options.grid)[0], (*options.grid)[1])};
   if (options.is_serpentine && !options.import_again) missing.push_back("--serpentine");
+  if (!options.picture.empty() && !options.import_again)
+    missing.insert(missing.end(), {"--layout", NameOf(options.picture_grid.layout)});
   if (needs_pitch && !(options.pitch_w && options.import_again)) {
     const Vec2 pitch_w = options.pitch_w.value_or(Vec2(1, 1));
     missing.insert(missing.end(), {"--pitch", fmt::format("{},{}", pitch_w.x(), pitch_w.y())});
@@ -163,8 +184,13 @@ std::string ImportCommand(const fs::path& folder, const std::vector<StanfordImag
     missing.insert(missing.end(),
                    {"--plane-distance", fmt::format("{:.3g}", 100 * SpacingOf(images, options))});
   if (options.import_again) return options.import_again(missing);
-  const std::string name = FileArgument(options.asked_for.empty() ? folder : options.asked_for);
-  std::vector<std::string> words = {"lfimport", name, "-o", name};
+  const fs::path asked_for = options.asked_for.empty() ? folder : options.asked_for;
+  // The folder for the calibration of a picture has its name.
+  const fs::path output = IsImageName(asked_for.filename().string())
+                              ? fs::path(asked_for).replace_extension()
+                              : asked_for;
+  std::vector<std::string> words = {"lfimport", FileArgument(asked_for), "-o",
+                                    FileArgument(output)};
   words.insert(words.end(), missing.begin(), missing.end());
   return ShellCommand(words);
 }
@@ -212,7 +238,10 @@ Result<void> CheckComplete(const fs::path& folder, const std::vector<StanfordIma
         "state the pitch and the focal length, and {{plane_distance}} if the images may be "
         "rectified "
         "to one plane, for instance by: {}",
-        folder.string(), options.grid ? "follow the order of the grid" : "contain row and column",
+        folder.string(),
+        !options.picture.empty() ? "of its views contain row and column"
+        : options.grid           ? "follow the order of the grid"
+                                 : "contain row and column",
         images[0].file_name, ImportCommand(folder, images, options, true, width_px)));
   if (options.focal_px) return {};
   const auto lacks_lens = [](const StanfordImage& image) { return !image.name.lens; };
@@ -267,9 +296,13 @@ Result<Intrinsics> IntrinsicsOf(const StanfordName& name, const ImageFileInfo& i
         fmt::format("the computed focal length is {} px: expected 0.001 to 1e7 px: correct "
                     "{{focal_px}}, or the focal length and sensor width in the file name",
                     k.fx_px));
-  k.fy_px = k.fx_px;
+  k.fy_px =
+      k.fx_px *
+      (options.picture.empty() ? 1 : PixelAspect(options.picture_grid, info.width, info.height));
   const Vec2 shift_px =
-      options.plane_distance_w ? offset_w * k.fx_px / *options.plane_distance_w : Vec2(0, 0);
+      options.plane_distance_w
+          ? Vec2(offset_w.cwiseProduct(Vec2(k.fx_px, k.fy_px)) / *options.plane_distance_w)
+          : Vec2(0, 0);
   k.cx_px = info.width / 2.0 + shift_px.x();
   k.cy_px = info.height / 2.0 + shift_px.y();
   if (!(shift_px.cwiseAbs().maxCoeff() <= kLargestPrincipal_px / 2))
@@ -302,8 +335,9 @@ StanfordNames FindStanfordNames(const fs::path& folder) {
 
 Result<LightField> ReadStanfordFolder(const fs::path& folder, const StanfordOptions& options) {
   LF_RETURN_IF_ERROR(CheckOptions(options));
-  LF_ASSIGN_OR_RETURN(const Listing listing,
-                      options.grid ? ListGrid(folder, options) : ListFolder(folder));
+  LF_ASSIGN_OR_RETURN(const Listing listing, !options.picture.empty() ? ListPicture(folder, options)
+                                             : options.grid           ? ListGrid(folder, options)
+                                                                      : ListFolder(folder));
   LF_RETURN_IF_ERROR(CheckPlaces(folder, listing.images));
   LF_ASSIGN_OR_RETURN(const ImageFileInfo info,
                       ReadImageInfo(folder / listing.images[0].file_name));

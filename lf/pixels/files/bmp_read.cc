@@ -202,6 +202,8 @@ class BmpDecoder : public PictureDecoder {
     return count == profile.size() ? profile : "";
   }
 
+  bool has_rows_on_disk() const override { return true; }
+
   Result<void> Read(StoredImage* image) override {
     const Result<PixelRect> rect = ReadPart({0, 0, info_.width, info_.height}, image);
     return rect ? Result<void>() : rect.error();

@@ -2,7 +2,10 @@
 // Reads image files (doc/formats/images.md lists the formats) and writes PNG, JPEG, TIFF and EXR
 // files. No other folder uses the libraries of image formats.
 //
-// All functions may be called by many threads at once; none starts threads of its own.
+// Paths may also name a view of a picture, such as mosaic.png#160x120+320+240 (picture_view.h).
+//
+// All functions may be called by many threads at once; none starts threads of its own, but
+// libraries of HEIF files may.
 #pragma once
 
 #include <array>

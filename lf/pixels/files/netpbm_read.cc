@@ -107,6 +107,8 @@ class NetpbmDecoder : public PictureDecoder {
   const ImageFileInfo& info() const override { return info_; }
   const RowsInFile& rows() const { return rows_; }
 
+  bool has_rows_on_disk() const override { return !head_.is_plain; }
+
   Result<void> Read(StoredImage* image) override {
     const Result<PixelRect> rect = ReadPart({0, 0, info_.width, info_.height}, image);
     return rect ? Result<void>() : rect.error();

@@ -45,6 +45,8 @@ class PictureDecoder {
   // if possible. kInput: the file is truncated or damaged anywhere, even if the library could guess
   // what is missing.
   virtual Result<void> Read(StoredImage* image) = 0;
+  // Returns true if ReadPart() reads only the rows of the part.
+  virtual bool has_rows_on_disk() const { return false; }
   // Decodes at least the pixels `wanted`, which must contain a pixel of the picture, as Read()
   // does. Returns the rectangle that it decoded: the whole picture, unless the format allows less
   // work.

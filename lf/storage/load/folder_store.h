@@ -32,6 +32,10 @@ namespace lf {
 class FolderStore : public LfImageStore {
  public:
   explicit FolderStore(const LightField& light_field, Mosaics mosaics = Mosaics::kAsRecorded);
+  // Frees the picture that the views of the light field share (pixels/files/picture_view.h).
+  ~FolderStore() override;
+  FolderStore(const FolderStore&) = delete;
+  FolderStore& operator=(const FolderStore&) = delete;
 
   // Loads the pixels of `rect`, clipped to the image. kInput as LfImageStore says, and if the
   // levels (lf_black_level, lf_white_level) exceed the file's bits, a mask file has another size
