@@ -110,6 +110,45 @@ class PicturesOfViewsTest(ProgramTestCase):
         expected = self.frames(self.native("row"))
         self.assert_same(self.frames(self.native(f"q_qs{COLUMNS}x{ROWS}a1.33.png")), expected)
 
+    def test_arrays_give_the_frames_of_a_folder(self):
+        expected = self.frames(self.native("views"))
+        rgb = self.views[..., ::-1]
+        np.save(self.folder / "little.npy", np.ascontiguousarray(rgb))
+        np.save(self.folder / "big.npy", np.ascontiguousarray(rgb).astype(">u2"))
+        for name in ("little.npy", "big.npy"):
+            with self.subTest(name):
+                native = self.native(name)
+                content = json.loads((native / "transforms.json").read_text())
+                self.assertEqual(content["frames"][5]["file_path"], f"../{name}#view+1+1")
+                self.assert_same(self.frames(native), expected)
+                store = self.folder / f"{name}.lfs"
+                self.run_tool(COMPRESSOR, native, "-o", store, "--profile", "lossless")
+                self.assert_same(self.frames(store), expected)
+
+    def test_arrays_of_floats_hold_light(self):
+        for kind in (np.float32, np.float64):
+            light = np.full((ROWS, COLUMNS, 48, 64, 3), 3.5, kind)
+            np.save(self.folder / f"{kind.__name__}.npy", light)
+            middle = self.frames(self.native(f"{kind.__name__}.npy"))[0]["G"][18, 24]
+            self.assertAlmostEqual(float(middle), 3.5, delta=0.01)
+        np.save(self.folder / "grey.npy", np.ascontiguousarray(light[..., 0].astype(np.uint8)))
+        report = json.loads(self.run_tool(IMPORT, self.folder / "grey.npy", *GEOMETRY, "--json").stdout)
+        self.assertEqual((report["images"], report["broken"]), (12, 0))
+
+    def test_other_arrays_are_refused(self):
+        for name, array, said in (("fortran", np.asfortranarray(self.views), "Fortran order"),
+                                  ("signed", self.views.astype(np.int16), "'<i2'"),
+                                  ("channels", np.concatenate([self.views] * 2, -1), "up to 4 channels")):
+            with self.subTest(name):
+                np.save(self.folder / f"{name}.npy", array)
+                self.fails(3, [said], IMPORT, self.folder / f"{name}.npy", *GEOMETRY)
+        np.save(self.folder / "views.npy", self.views)
+        self.fails(2, ["--grid", "leave the option out"], IMPORT, self.folder / "views.npy", "--grid", "4x3", *GEOMETRY)
+        (self.folder / "views.npy").write_bytes((self.folder / "views.npy").read_bytes()[:-1])
+        self.fails(3, ["copy or save it again"], IMPORT, self.folder / "views.npy", *GEOMETRY)
+        (self.folder / "a.h5").write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(100))
+        self.fails(3, ["is an HDF5 file"], IMPORT, self.folder / "a.h5")
+
     def test_every_way_to_a_film_takes_views(self):
         self.write("mosaic.png", self.mosaic())
         native = self.native("mosaic.png", "--grid", f"{COLUMNS}x{ROWS}")

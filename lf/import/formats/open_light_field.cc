@@ -31,6 +31,7 @@
 #include "lf/light_field/model/masks_beside.h"
 #include "lf/light_field/model/raw_encoding.h"
 #include "lf/light_field/transforms_json/transforms_json.h"
+#include "lf/pixels/files/view_array.h"
 #include "lf/storage/packed/packed_store_file.h"
 
 namespace lf {
@@ -362,12 +363,11 @@ std::string LightFieldsBelow(const fs::path& folder) {
                      ShellCommand({"lfimport", FileArgument(folder / names[0])}));
 }
 
-// Returns true for a file of a Lytro camera (.lfr, .lfp).
-bool IsLytroFile(const fs::path& path) {
-  constexpr std::string_view kMagic = "\x89LFP\r\n\x1a\n";
-  std::string start(kMagic.size(), '\0');
+// Returns true if a file begins with these bytes.
+bool BeginsWith(const fs::path& path, std::string_view magic) {
+  std::string start(magic.size(), '\0');
   std::ifstream file(path, std::ios::binary);
-  return file.read(start.data(), static_cast<std::streamsize>(start.size())) && start == kMagic;
+  return file.read(start.data(), static_cast<std::streamsize>(start.size())) && start == magic;
 }
 
 // Opens a picture that holds the views of a grid of cameras.
@@ -396,6 +396,22 @@ Result<LightField> OpenPicture(const fs::path& path, const OpenOptions& options,
   return ReadStanfordFolder(path.parent_path(), picture);
 }
 
+// Opens an array of views, which states its rows and columns.
+Result<LightField> OpenArray(const fs::path& path, const OpenOptions& options) {
+  LF_RETURN_IF_ERROR(CheckNoFov(path, options));
+  LF_RETURN_IF_ERROR(CheckNoImagesFolder(path, options));
+  if (options.grid || options.layout)
+    return UsageError(fmt::format(
+        "{}: {} is an array, which states the rows and columns of its views: leave the option out",
+        options.grid ? "{grid}" : "{layout}", path.string()));
+  LF_ASSIGN_OR_RETURN(const ViewArray array, ReadViewArray(path));
+  LogDebug("{}: opened as an array of {} x {} views", path.string(), array.columns, array.rows);
+  StanfordOptions views = StanfordOptionsOf(options, path);
+  views.picture = path.filename().string();
+  views.picture_grid = {.layout = PictureLayout::kArray, .grid = {array.columns, array.rows}};
+  return ReadStanfordFolder(path.parent_path(), views);
+}
+
 bool HoldsImages(const fs::path& folder) {
   const Result<std::vector<std::string>> names = SortedImageNames(folder);
   return names && !names->empty();
@@ -414,9 +430,16 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
   if (!fs::exists(status))
     return InputError(fmt::format("{}: no such file or folder", path.string()));
   if (!fs::is_directory(status)) {
+    if (path.extension() == ".npy" && HoldsViewArray(path)) return OpenArray(path, options);
     if (std::optional<Result<LightField>> opened = OpenFile(path, options)) return *opened;
     if (IsImageName(path.filename().string())) return OpenPicture(path, options, path);
-    if (IsLytroFile(path))
+    if (BeginsWith(path, "\x89HDF\r\n\x1a\n"))
+      return InputError(
+          fmt::format("{}: is an HDF5 file, which is not read: save its array of views (rows, "
+                      "columns, height, width, channels) by numpy.save() as a .npy file, and give "
+                      "that",
+                      path.string()));
+    if (BeginsWith(path, "\x89LFP\r\n\x1a\n"))
       return InputError(fmt::format(
           "{}: is a picture of a Lytro camera, which is not decoded here: decode it with "
           "plenopticam or LFToolbox, which write folders of views",

@@ -74,11 +74,12 @@ bool HoldsOwnAndItsSource(const std::filesystem::path& folder, bool has_grid = f
 //   light_field/transforms_json/transforms_json.h
 // - a COLMAP model, in the folder, its sparse/0 or below: light_field/colmap/read_colmap.h
 // - NAME_par.txt: import/formats/read_middlebury.h
-// - poses_bounds.npy, or any .npy file: import/formats/read_llff.h
+// - poses_bounds.npy, or any .npy file of two dimensions: import/formats/read_llff.h
 // - parameters.cfg, or any .cfg file: import/formats/read_hci.h
 // - poses.json, or any .json file with M3x4 matrices: import/formats/read_aos.h
 // - transforms_train.json, transforms_val.json and transforms_test.json: their union
 // - images with Stanford names, in the folder or its images/: import/formats/read_stanford.h
+// - a .npy file of four or five dimensions: pixels/files/view_array.h
 // - a picture that holds the views of a grid of cameras, or a folder with one picture whose name
 // says
 //   so: import/formats/picture_grid.h

@@ -18,7 +18,7 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kLayoutNames[] = {"mosaic", "quilt", "lenslets"};
+constexpr const char* kLayoutNames[] = {"mosaic", "quilt", "lenslets", "array"};
 constexpr int kMostViewsAcross = 1000;
 
 // Removes a number from the start of the text. Returns none unless it is from 1 to
@@ -79,15 +79,27 @@ std::optional<fs::path> PictureOfViewsIn(const fs::path& folder, bool is_any) {
 
 Result<std::vector<ViewOfPicture>> ViewsOfPicture(const fs::path& picture,
                                                   const PictureGrid& grid) {
-  LF_ASSIGN_OR_RETURN(const ImageFileInfo info, ReadImageInfo(picture));
   const auto [columns, rows] = grid.grid;
+  std::vector<ViewOfPicture> views;
+  if (grid.layout == PictureLayout::kArray) {
+    for (int row = 0; row < rows; ++row)
+      for (int column = 0; column < columns; ++column) {
+        PictureView view;
+        view.file = picture.filename();
+        view.is_of_array = true;
+        view.x = column;
+        view.y = row;
+        views.push_back({PathOfView(view).string(), row, column});
+      }
+    return views;
+  }
+  LF_ASSIGN_OR_RETURN(const ImageFileInfo info, ReadImageInfo(picture));
   if (info.width % columns != 0 || info.height % rows != 0)
     return InputError(fmt::format(
         "{}: has {} x {} pixels, which cannot be divided into {} x {} views ({}): correct the "
         "columns and rows ({{lfimport grid}})",
         picture.string(), info.width, info.height, columns, rows, NameOf(grid.layout)));
   const int width = info.width / columns, height = info.height / rows;
-  std::vector<ViewOfPicture> views;
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column) {
       PictureView view;

@@ -6,6 +6,7 @@
 //             light field displays take them: NAME_qsCOLUMNSxROWS[aASPECT].ext
 //   lenslets  the pixels of all views interleaved: under each lenslet lies one pixel of every view,
 //             as in the ESLF pictures of the Stanford Lytro Light Field Archive: NAME_eslf.ext
+//   array     a NumPy file of views (pixels/files/view_array.h)
 //
 // Their views become LF images that are read as parts of the picture (pixels/files/picture_view.h).
 #pragma once
@@ -21,9 +22,9 @@
 
 namespace lf {
 
-enum class PictureLayout { kMosaic, kQuilt, kLenslets };
+enum class PictureLayout { kMosaic, kQuilt, kLenslets, kArray };
 
-// Returns "mosaic", "quilt" or "lenslets".
+// Returns "mosaic", "quilt", "lenslets" or "array".
 const char* NameOf(PictureLayout layout);
 // Returns the layout of this name; nullopt for other words.
 std::optional<PictureLayout> PictureLayoutOf(std::string_view name);

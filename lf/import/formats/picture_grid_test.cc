@@ -46,7 +46,7 @@ TEST_F(PictureGridTest, QuiltsBeginBelow) {
             (std::vector<std::string>{"a_qs2x2.png#10x6+0+6", "a_qs2x2.png#10x6+10+6",
                                       "a_qs2x2.png#10x6+0+0", "a_qs2x2.png#10x6+10+0"}));
   EXPECT_EQ(light_field.Camera({3}).CentreWorld(), Vec3(1.5, 0, 0));
-  // The same picture as a mosaic.
+  // A mosaic begins above.
   light_field = *OpenLightField(folder_ / "a_qs2x2.png", {.focal_px = 9,
                                                           .pitch_w = Vec2(1, 2),
                                                           .grid = std::array{2, 2},

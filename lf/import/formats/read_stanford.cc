@@ -170,7 +170,8 @@ std::string ImportCommand(const fs::path& folder, const std::vector<StanfordImag
   if (options.grid && !options.import_again)
     missing = {"--grid", fmt::format("{}x{}", (*options.grid)[0], (*options.grid)[1])};
   if (options.is_serpentine && !options.import_again) missing.push_back("--serpentine");
-  if (!options.picture.empty() && !options.import_again)
+  if (!options.picture.empty() && options.picture_grid.layout != PictureLayout::kArray &&
+      !options.import_again)
     missing.insert(missing.end(), {"--layout", NameOf(options.picture_grid.layout)});
   if (needs_pitch && !(options.pitch_w && options.import_again)) {
     const Vec2 pitch_w = options.pitch_w.value_or(Vec2(1, 1));
@@ -186,9 +187,9 @@ std::string ImportCommand(const fs::path& folder, const std::vector<StanfordImag
   if (options.import_again) return options.import_again(missing);
   const fs::path asked_for = options.asked_for.empty() ? folder : options.asked_for;
   // The folder for the calibration of a picture has its name.
-  const fs::path output = IsImageName(asked_for.filename().string())
-                              ? fs::path(asked_for).replace_extension()
-                              : asked_for;
+  const fs::path output = options.picture.empty() || asked_for.filename() != options.picture
+                              ? asked_for
+                              : fs::path(asked_for).replace_extension();
   std::vector<std::string> words = {"lfimport", FileArgument(asked_for), "-o",
                                     FileArgument(output)};
   words.insert(words.end(), missing.begin(), missing.end());
@@ -367,7 +368,9 @@ Result<LightField> ReadStanfordFolder(const fs::path& folder, const StanfordOpti
     light_field.image_names.push_back(image.file_name);
   }
   light_field.intrinsics = distinct.Take();
-  light_field.encoding.max_radiance = DefaultMaxRadiance(light_field.image_names);
+  // Arrays of floats have no name that tells them from those of integers.
+  light_field.encoding.max_radiance =
+      info.is_float ? kFloatMaxRadiance : DefaultMaxRadiance(light_field.image_names);
   return light_field;
 }
 

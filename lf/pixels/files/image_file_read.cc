@@ -253,10 +253,12 @@ Result<std::string> ReadStatedText(const fs::path& path, const char* key) {
 }
 
 Result<std::string> ReadIccProfile(const fs::path& path) {
+  if (const auto view = PictureViewOf(path); view && view->is_of_array) return std::string();
   return FromFile(FileOfImage(path), [](const FileBytes& file) { return ProfileFrom(file); });
 }
 
 Result<ExposureFacts> ReadExposureFacts(const fs::path& path) {
+  if (const auto view = PictureViewOf(path); view && view->is_of_array) return ExposureFacts();
   return FromFile(FileOfImage(path), [](const FileBytes& file) { return ExposureFrom(file); });
 }
 

@@ -14,12 +14,14 @@
 #include <variant>
 
 #include "lf/pixels/files/rows_on_disk.h"
+#include "lf/pixels/files/view_array.h"
 
 namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kStrided = "every-";
+constexpr std::string_view kOfArray = "view+";
 
 // Reads a number and the character behind it, which must be `end`; '\0': the text must end.
 std::optional<int> NumberBefore(char end, std::string_view* text) {
@@ -152,6 +154,17 @@ std::optional<PictureView> PictureViewOf(const fs::path& image) {
   if (mark == std::string::npos || mark == 0) return std::nullopt;
   std::string_view text = std::string_view(path).substr(mark + 1);
   PictureView view;
+  if (text.starts_with(kOfArray)) {
+    text.remove_prefix(kOfArray.size());
+    const std::optional<int> row = NumberBefore('+', &text);
+    const std::optional<int> column = row ? NumberBefore('\0', &text) : std::nullopt;
+    if (!column) return std::nullopt;
+    view.file = path.substr(0, mark);
+    view.is_of_array = true;
+    view.x = *column;
+    view.y = *row;
+    return view;
+  }
   const bool is_strided = text.starts_with(kStrided);
   if (is_strided) text.remove_prefix(kStrided.size());
   const std::optional<int> across = NumberBefore('x', &text);
@@ -179,6 +192,8 @@ std::string ViewSuffix(const fs::path& image) {
 }
 
 fs::path PathOfView(const PictureView& view) {
+  if (view.is_of_array)
+    return fmt::format("{}#{}{}+{}", view.file.native(), kOfArray, view.y, view.x);
   const bool is_strided = view.step_x != 1 || view.step_y != 1;
   return fmt::format("{}#{}{}x{}+{}+{}", view.file.native(), is_strided ? kStrided : "",
                      is_strided ? view.step_x : view.width, is_strided ? view.step_y : view.height,
@@ -186,12 +201,17 @@ fs::path PathOfView(const PictureView& view) {
 }
 
 Result<ImageFileInfo> ReadViewInfo(const PictureView& view) {
+  if (view.is_of_array) {
+    LF_ASSIGN_OR_RETURN(const ViewArray array, ReadViewArray(view.file));
+    return array.info;
+  }
   LF_ASSIGN_OR_RETURN(const ImageFileInfo picture, ReadImageInfo(view.file));
   LF_ASSIGN_OR_RETURN(const PictureView sized, Sized(view, picture));
   return InfoOf(sized, picture);
 }
 
 Result<void> ReadViewPart(const PictureView& view, const WantedPixels& wanted, ImagePart* part) {
+  if (view.is_of_array) return ReadArrayPart(view.file, view.y, view.x, wanted, part);
   PixelRect rect;
   const auto rect_of = [&](const ImageFileInfo& picture) -> Result<PixelRect> {
     LF_ASSIGN_OR_RETURN(const PictureView sized, Sized(view, picture));
@@ -226,6 +246,7 @@ Result<void> ReadViewPart(const PictureView& view, const WantedPixels& wanted, I
 }
 
 size_t SharedPictureBytes(const PictureView& view) {
+  if (view.is_of_array) return 0;
   const Result<ImageFileInfo> info = ReadImageInfo(view.file);
   const Result<bool> is_on_disk = HasRowsOnDisk(view.file);
   if (!info || !is_on_disk || *is_on_disk) return 0;

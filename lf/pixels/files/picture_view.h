@@ -4,11 +4,12 @@
 //
 //   mosaic.png#160x120+320+240      the rectangle of 160 x 120 pixels at column 320, row 240
 //   lenslets.png#every-14x14+3+4    every 14th pixel of every 14th row, from column 3, row 4 on
+//   views.npy#view+3+4              the view in row 3, column 4 of an array (view_array.h)
 //
 // ReadImageInfo(), ReadImagePart() and all other functions of image_file.h that take paths read
 // views as they read files. The picture is decoded once and kept for other views, until another
-// picture is needed or ForgetSharedPicture() is called; the pixels of Netpbm, PFM and BMP files are
-// read from the disk instead. All functions may be called by many threads at once.
+// picture is needed or ForgetSharedPicture() is called; the pixels of arrays and of Netpbm, PFM and
+// BMP files are read from the disk instead. All functions may be called by many threads at once.
 #pragma once
 
 #include <filesystem>
@@ -25,8 +26,9 @@ struct PictureView {
   int x = 0, y = 0;            // its first pixel
   // Columns and rows from one pixel of the view to the next; 1: the view is a rectangle.
   int step_x = 1, step_y = 1;
-  // Size of a rectangle. If steps are not 1, the view reaches to the end of the picture, and both
-  // are 0.
+  bool is_of_array = false;  // x and y are the column and row of the view in an array
+  // Size of a rectangle. If it is of an array, or if steps are not 1, the view reaches to the end
+  // of the picture, and both are 0.
   int width = 0, height = 0;
 };
 

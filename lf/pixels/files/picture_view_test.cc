@@ -17,7 +17,7 @@ using PictureViewTest = FolderTest;
 
 TEST(PictureViewName, IsWrittenAndReadAgain) {
   for (const char* const path :
-       {"a/m.png#160x120+320+240", "l.png#every-14x14+3+4", "m#1.png#2x1+0+0"}) {
+       {"a/m.png#160x120+320+240", "l.png#every-14x14+3+4", "v.npy#view+3+4", "m#1.png#2x1+0+0"}) {
     const std::optional<PictureView> view = PictureViewOf(path);
     ASSERT_TRUE(view) << path;
     EXPECT_EQ(PathOfView(*view), path);
@@ -25,8 +25,8 @@ TEST(PictureViewName, IsWrittenAndReadAgain) {
   }
   for (const char* const path :
        {"m.png", "m.png#", "m.png#1x1", "m.png#1x1+0", "m.png#1x1+0+0x", "m.png#0x1+0+0",
-        "#1x1+0+0", "m.png#1x1+-1+0", "m.png#every-1x1+0+0", "m.png#99999999999x1+0+0",
-        "m.png#1x1+0+0/b.png"}) {
+        "#1x1+0+0", "m.png#1x1+-1+0", "v.npy#view+3", "v.npy#view+3+4+5", "v.npy#view+-3+4",
+        "m.png#every-1x1+0+0", "m.png#99999999999x1+0+0", "m.png#1x1+0+0/b.png"}) {
     EXPECT_FALSE(PictureViewOf(path)) << path;
     EXPECT_EQ(FileOfImage(path), path);
     EXPECT_EQ(ViewSuffix(path), "");
@@ -45,7 +45,7 @@ ImagePart PartOfView(const std::filesystem::path& path, const PixelRect& rect) {
 TEST_F(PictureViewTest, HoldsThePixelsOfItsPartOfThePicture) {
   const Image<uint16_t> picture = NoiseImage<uint16_t>(30, 20, 3);
   ASSERT_TRUE(WriteImage(folder_ / "m.png", picture.view()));
-  // The same pixels without compression, which are read from the disk.
+  // A copy without compression, which is read from the disk.
   {
     std::ofstream ppm(folder_ / "m.ppm", std::ios::binary);
     ppm << "P6 30 20 65535\n";
