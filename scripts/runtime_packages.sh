@@ -23,7 +23,7 @@ fi
 # Programs name the libraries that they load later.
 mapfile -t later < <(grep --text --only-matching --no-filename -E 'lib(heif|jxl)\.so\.[0-9.]+' "${programs[@]}" | sort -u)
 for name in "${later[@]}"; do
-  path=$(/sbin/ldconfig -p | awk -v name="$name" '$1 == name { print $NF; exit }')
+  path=$(/sbin/ldconfig -p | awk -v name="$name" '$1 == name && !count++ { print $NF }')
   if [[ -z $path ]]; then
     echo "error: the programs load $name, which is not installed here" >&2
     exit 1
