@@ -58,6 +58,54 @@ add_library(lf_lcms INTERFACE)
 target_include_directories(lf_lcms SYSTEM INTERFACE ${LF_LCMS_INCLUDE})
 target_link_libraries(lf_lcms INTERFACE ${LF_LCMS_LIBRARY})
 
+# Optional: formats of image files (doc/formats/images.md). Small libraries are linked. Those that load many others are
+# loaded when the first file needs them (lf/pixels/files/loaded_library.h), and only their headers are used here.
+add_library(lf_picture_libraries INTERFACE)
+target_link_libraries(lf_picture_libraries INTERFACE ${CMAKE_DL_LIBS})
+set(LF_PICTURE_LIBRARIES)  # names of those that are linked
+
+# lf_find_picture_library(KEY FORMAT HEADER LIBRARY [FOLDERS...])  sets LF_KEY_INCLUDE and LF_KEY_LIBRARY, and FOUND_KEY
+function(lf_find_picture_library key format header library)
+  find_path(LF_${key}_INCLUDE ${header} PATH_SUFFIXES ${ARGN})
+  find_library(LF_${key}_LIBRARY ${library} PATH_SUFFIXES ${ARGN})
+  if(LF_${key}_INCLUDE AND LF_${key}_LIBRARY)
+    set(FOUND_${key} TRUE PARENT_SCOPE)
+    target_include_directories(lf_picture_libraries SYSTEM INTERFACE ${LF_${key}_INCLUDE})
+  else()
+    message(STATUS "${library} is missing: the programs are built without ${format} images")
+  endif()
+endfunction()
+
+# lf_link_picture_library(KEY LIBRARY)  links a library that was found, and defines LF_HAS_KEY
+macro(lf_link_picture_library key library)
+  if(FOUND_${key})
+    target_link_libraries(lf_picture_libraries INTERFACE ${LF_${key}_LIBRARY})
+    target_compile_definitions(lf_picture_libraries INTERFACE LF_HAS_${key})
+    list(APPEND LF_PICTURE_LIBRARIES ${library})
+  endif()
+endmacro()
+
+# lf_load_picture_library(KEY)  defines LF_KEY_LIBRARY_NAME, the file that the library is loaded from: its SONAME
+function(lf_load_picture_library key)
+  if(FOUND_${key})
+    execute_process(COMMAND ${CMAKE_OBJDUMP} -p ${LF_${key}_LIBRARY} OUTPUT_VARIABLE headers ERROR_QUIET)
+    if(headers MATCHES "SONAME +([^ \n]+)")
+      target_compile_definitions(lf_picture_libraries INTERFACE LF_${key}_LIBRARY_NAME="${CMAKE_MATCH_1}")
+    else()
+      message(STATUS "${LF_${key}_LIBRARY} has no SONAME: the programs are built without it")
+    endif()
+  endif()
+endfunction()
+
+lf_find_picture_library(WEBP WebP webp/decode.h webp)
+lf_link_picture_library(WEBP webp)
+lf_find_picture_library(OPENJPEG "JPEG 2000" openjpeg.h openjp2 openjpeg-2.5)
+lf_link_picture_library(OPENJPEG openjp2)
+lf_find_picture_library(JXL "JPEG XL" jxl/decode.h jxl)
+lf_load_picture_library(JXL)
+lf_find_picture_library(HEIF HEIF libheif/heif.h heif)
+lf_load_picture_library(HEIF)
+
 # Optional: display views of frames (--view).
 find_path(LF_OCIO_INCLUDE OpenColorIO/OpenColorIO.h)
 find_library(LF_OCIO_LIBRARY OpenColorIO)

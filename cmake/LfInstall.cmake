@@ -17,7 +17,8 @@ target_include_directories(lf_installed INTERFACE $<INSTALL_INTERFACE:${CMAKE_IN
 # name, so that their user needs no CMake packages of them.
 target_link_libraries(lf_installed PUBLIC Eigen3::Eigen fmt::fmt TBB::tbb Threads::Threads yaml-cpp
                                           hwy::hwy OpenEXR::OpenEXR OpenEXR::OpenEXRCore png tiff z raw_r jpeg lcms2
-                                          simdjson zstd xxhash sqlite3 icuuc pugixml ${LF_OCIO_NAME})
+                                           simdjson zstd xxhash sqlite3 icuuc pugixml ${LF_OCIO_NAME}
+                                           ${LF_PICTURE_LIBRARIES} ${CMAKE_DL_LIBS})
 install(TARGETS lf_installed EXPORT lfrendertoolsTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 
@@ -49,6 +50,8 @@ string(REGEX REPLACE "[^/]+" ".." LF_PC_UP "${CMAKE_INSTALL_LIBDIR}")
 if(LF_OCIO_NAME)
   set(LF_PC_OCIO -l${LF_OCIO_NAME})
 endif()
+list(TRANSFORM LF_PICTURE_LIBRARIES PREPEND -l OUTPUT_VARIABLE LF_PC_PICTURES)
+list(JOIN LF_PC_PICTURES " " LF_PC_PICTURES)
 configure_file(cmake/lfrendertools.pc.in lfrendertools.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/lfrendertools.pc
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -27,6 +27,7 @@ cmake --build build/fuzz --target "${targets[@]/%/_fuzz}" >&2
 seconds=$((minutes * 60 * $(nproc) / ${#targets[@]}))
 mkdir -p build/fuzz/found build/fuzz/log
 export seconds
+export LSAN_OPTIONS=suppressions=scripts/lsan.supp:print_suppressions=0
 fuzz() {
   local target=$1 program
   program=$(find build/fuzz -name "$1_fuzz" -type f -perm -u+x)

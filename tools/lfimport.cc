@@ -25,6 +25,7 @@
 #include "lf/import/check/native_folder.h"
 #include "lf/import/check/similarity.h"
 #include "lf/import/check/unused_masks.h"
+#include "lf/import/formats/picture_grid.h"
 #include "lf/import/report/exposure_steps.h"
 #include "lf/import/report/import_report.h"
 #include "lf/storage/load/measure_footprint.h"
@@ -60,7 +61,9 @@ struct Arguments {
   lf::LightFieldArgument light_field;
   std::string output, pitch, transform, bayer, masks, check = "headers";
   double plane_distance = 0, scale = 1, unit_m = 0, distance = 0;
-  bool flip_x = false, flip_y = false, force = false;
+  bool flip_x = false, flip_y = false, is_serpentine = false, force = false;
+  std::pair<int, int> grid = {0, 0};
+  std::string layout;
   std::string repair;
   std::vector<std::string> exclude;
   lf::AllowMissing allow_missing;
@@ -189,6 +192,28 @@ void AddNamedImages(CLI::App& app, Arguments& a) {
            "scene are at the same pixels in all images. 0: the images are not rectified; the "
            "cameras look in parallel directions.")
       ->check(CLI::NonNegativeNumber);
+  CLI::Option* const grid =
+      named
+          .Add("--grid COLUMNSxROWS", a.grid,
+               "The images are those of a grid, in the order of their names\n"
+               "For folders whose names do not tell rows and columns. Numbers in names count by "
+               "their value. The first image is that of the upper left LF camera; rows follow each "
+               "other.")
+          ->delimiter('x')
+          ->check(CLI::PositiveNumber)
+          ->default_str("");
+  named.AddChoice("--layout", a.layout, {"mosaic", "quilt", "lenslets"},
+                  "How one picture holds the views of --grid (by its name)\n"
+                  "mosaic: side by side, row by row from the upper left view on; the default for "
+                  "names that do not tell\n"
+                  "quilt: the views of one row of LF cameras, from the lower left place on, row by "
+                  "row upwards; the default for NAME_qsCxR.png\n"
+                  "lenslets: the pixels of all views interleaved; the default for NAME_eslf.png, "
+                  "with 14x14 views");
+  named
+      .AddFlag("--serpentine", a.is_serpentine,
+               "Every second row of --grid runs from right to left")
+      ->needs(grid);
   named.AddFlag("--flip-x", a.flip_x, "Image names count columns from right to left");
   named.AddFlag("--flip-y", a.flip_y, "Image names count rows from bottom to top");
 }
@@ -216,7 +241,7 @@ lf::Result<lf::Vec2> ParsePitch(const std::string& text) {
 bool WritesAgain(const Arguments& a) {
   std::error_code error;
   return !a.output.empty() && std::filesystem::equivalent(a.light_field.path, a.output, error) &&
-         lf::HoldsOwnAndItsSource(a.light_field.path);
+         lf::HoldsOwnAndItsSource(a.light_field.path, a.grid.first > 0);
 }
 
 // Returns the command of this call with options added, and with -o, if the call does not have it.
@@ -232,6 +257,9 @@ lf::Result<lf::OpenOptions> MakeOpenOptions(const Arguments& a) {
   if (!a.pitch.empty()) {
     LF_ASSIGN_OR_RETURN(options.pitch_w, ParsePitch(a.pitch));
   }
+  if (a.grid.first > 0) options.grid = {a.grid.first, a.grid.second};
+  options.is_serpentine = a.is_serpentine;
+  options.layout = lf::PictureLayoutOf(a.layout);
   if (a.plane_distance > 0) options.plane_distance_w = a.plane_distance;
   options.flip_x = a.flip_x;
   options.flip_y = a.flip_y;
@@ -239,7 +267,11 @@ lf::Result<lf::OpenOptions> MakeOpenOptions(const Arguments& a) {
   options.bayer = lf::BayerPatternOf(a.bayer);
   if (!a.masks.empty()) options.masks_folder = a.masks;
   options.import_again = [&a](const std::vector<std::string>& added) {
-    return ImportAgain(a, added, a.light_field.path);
+    // The folder for the calibration of a picture of many views has the name of the picture.
+    std::error_code error;
+    std::filesystem::path output = a.light_field.path;
+    if (std::filesystem::is_regular_file(output, error)) output.replace_extension();
+    return ImportAgain(a, added, output.string());
   };
   return options;
 }
@@ -322,10 +354,11 @@ std::string AdviceOnFaults(const Arguments& a, const lf::LightField& light_field
 
 // Returns true if the call only reports, so that other programs see the light field as it does.
 bool OnlyReports(const Arguments& a) {
-  return a.output.empty() && a.pitch.empty() && a.plane_distance == 0 && !a.flip_x && !a.flip_y &&
-         a.transform.empty() && a.scale == 1 && a.unit_m == 0 && a.bayer.empty() &&
-         a.masks.empty() && a.repair.empty() && a.exclude.empty() && !a.exposure.match &&
-         !a.exposure.gain_from_exif && !a.exposure.mask_clipped;
+  return a.output.empty() && a.pitch.empty() && a.grid.first == 0 && a.layout.empty() &&
+         a.plane_distance == 0 && !a.flip_x && !a.flip_y && a.transform.empty() && a.scale == 1 &&
+         a.unit_m == 0 && a.bayer.empty() && a.masks.empty() && a.repair.empty() &&
+         a.exclude.empty() && !a.exposure.match && !a.exposure.gain_from_exif &&
+         !a.exposure.mask_clipped;
 }
 
 // Returns the line that advises to make a path; "" if images and poses do not agree, if a path

@@ -18,6 +18,7 @@
 
 #include "lf/core/log.h"
 #include "lf/import/formats/open_light_field.h"
+#include "lf/light_field/model/image_files.h"
 #include "lf/render/pipeline/merge_shards.h"
 
 namespace {
@@ -47,7 +48,7 @@ std::vector<std::filesystem::path> LfImagesIn(const std::filesystem::path& folde
   const lf::Result<lf::LightField> light_field = lf::OpenLightField(folder);
   if (!light_field) return images;
   for (uint32_t i = 0; i < light_field->size(); ++i)
-    images.push_back(light_field->ImagePath(lf::LfImageId{i}));
+    images.push_back(lf::ImageFileOf(*light_field, lf::LfImageId{i}));
   return images;
 }
 

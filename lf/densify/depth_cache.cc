@@ -12,6 +12,7 @@
 #include "lf/core/file.h"
 #include "lf/core/hash.h"
 #include "lf/core/log.h"
+#include "lf/light_field/model/image_files.h"
 #include "lf/light_field/model/value_hasher.h"
 #include "lf/pixels/codec/lf_image_codec.h"
 #include "lf/storage/packed/packed_store_file.h"
@@ -159,7 +160,7 @@ LfImageKeys::LfImageKeys(const LightField& light_field, int version) {
     hasher.Add(of_all);
     hasher.Add(light_field.image_names[i]);
     if (!is_packed) {
-      AddFile(light_field.ImagePath(id), &hasher);
+      AddFile(ImageFileOf(light_field, id), &hasher);
       const std::string mask = light_field.mask_names.empty() ? "" : light_field.mask_names[i];
       hasher.Add(mask);
       if (!mask.empty()) AddFile(light_field.folder / mask, &hasher);

@@ -21,6 +21,7 @@
 #include "lf/focus/moves/recorded_track.h"
 #include "lf/focus/moves/shot.h"
 #include "lf/light_field/model/capture_geometry.h"
+#include "lf/light_field/model/image_files.h"
 #include "lf/storage/packed/packed_store_file.h"
 
 namespace lf {
@@ -359,7 +360,7 @@ Result<LfImageId> FirstCamera(const LightField& light_field, const LfImageStore&
   std::vector<bool> is_unreadable;
   const auto is_readable = [&](LfImageId id) {
     if (!is_unreadable.empty() &&
-        (is_unreadable[id.value] || (has_files && !names.Has(light_field.ImagePath(id)))))
+        (is_unreadable[id.value] || (has_files && !names.Has(ImageFileOf(light_field, id)))))
       return false;
     const Result<LfPixels> pixel =
         LoadWithoutThrowing(store, id, {0, 0, 1, 1}, light_field.image_names[id.value], LfPixels());

@@ -428,7 +428,7 @@ class LightField:
 
 
 def read_image(path: FilePath) -> npt.NDArray[Any]:
-    """Read a picture (EXR, PNG, JPEG, TIFF or camera raw) as the programs do.
+    """Read a picture (EXR, PNG, JPEG, TIFF, WebP, ..., or camera raw) as the programs do.
 
     Parameters
     ----------

@@ -10,20 +10,23 @@ from . import _core, arguments
 from .arguments import FilePath
 from .light_field import LightField
 
+_LAYOUTS = ("", "mosaic", "quilt", "lenslets")
 _ALPHAS = ("auto", "mask", "straight", "premultiplied")
 
 
 def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[float] = None,
          images: Optional[FilePath] = None, image_scale: str = "auto", image_alpha: str = "auto",
          background: str = "", pitch: Union[None, float, Tuple[float, float]] = None,
-         plane_distance: Optional[float] = None, flip_x: bool = False, flip_y: bool = False) -> LightField:
+         plane_distance: Optional[float] = None, flip_x: bool = False, flip_y: bool = False,
+         grid: Optional[Tuple[int, int]] = None, serpentine: bool = False, layout: str = "") -> LightField:
     """Open a light field of any supported form.
 
     Parameters
     ----------
     path : path
         A calibration file or its folder (transforms.json, COLMAP, Middlebury, LLFF, HCI, AOS, exports of other
-        programs), a packed store (STORE.lfs), or a folder of images with Stanford names.
+        programs), a packed store (STORE.lfs), a folder of images with Stanford names, or a picture that holds the views
+        of a grid of cameras.
     focal_px : float, optional
         Focal length in pixels, for folders with Stanford names and trajectories in the form of TUM's benchmark.
     fov_deg : float, optional
@@ -38,6 +41,13 @@ def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[
         For folders with Stanford names: distance, in world units, of the plane to which the images are rectified.
     flip_x, flip_y : bool, optional
         For folders with Stanford names: True if columns or rows are counted in the opposite direction.
+    grid : tuple of int, optional
+        For folders of images with any names: columns and rows of the LF cameras, whose images follow each other in the
+        order of their names (numbers by their value), row by row from the upper left one on.
+    serpentine : bool, optional
+        True if every second row of `grid` runs from right to left.
+    layout : str, optional
+        How one picture holds the views of `grid`: "mosaic", "quilt" or "lenslets". "": as its name says, or a mosaic.
 
     Returns
     -------
@@ -64,6 +74,9 @@ def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[
     if pitch is not None:
         pair = arguments.numbers("pitch", pitch if hasattr(pitch, "__len__") else (pitch, pitch), 2, 2)
         pitch = (pair[0], pair[1])
+    if grid is not None:
+        sides = arguments.whole_numbers("grid", grid, 2)
+        grid = (sides[0], sides[1])
     core = _core.open_light_field(
         os.fsencode(source), 0.0 if focal_px is None else arguments.positive("focal_px", focal_px),
         0.0 if fov_deg is None else arguments.positive("fov_deg", fov_deg),
@@ -71,7 +84,8 @@ def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[
         arguments.text("image_scale", image_scale), arguments.choice("image_alpha", image_alpha, _ALPHAS),
         arguments.text("background", background), pitch,
         None if plane_distance is None else arguments.real("plane_distance", plane_distance),
-        (arguments.flag("flip_x", flip_x), arguments.flag("flip_y", flip_y)))
+        grid, arguments.choice("layout", layout, _LAYOUTS),
+        (arguments.flag("flip_x", flip_x), arguments.flag("flip_y", flip_y), arguments.flag("serpentine", serpentine)))
     return LightField(core, source)
 
 

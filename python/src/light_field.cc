@@ -25,6 +25,7 @@
 #include "lf/camera/ray_through.h"
 #include "lf/focus/example_path.h"
 #include "lf/import/formats/light_field_words.h"
+#include "lf/import/formats/picture_grid.h"
 #include "lf/import/paths/focal_surface_file.h"
 #include "lf/light_field/model/capture_geometry.h"
 #include "lf/light_field/model/keep_images.h"
@@ -46,7 +47,8 @@ std::shared_ptr<OpenedField> Open(const std::string& path, double focal_px, doub
                                   const std::string& image_alpha, const std::string& background,
                                   const std::optional<std::array<double, 2>>& pitch,
                                   std::optional<double> plane_distance,
-                                  const std::array<bool, 2>& flips) {
+                                  const std::optional<std::array<int, 2>>& grid,
+                                  const std::string& layout, const std::array<bool, 3>& flips) {
   LightFieldWords words;
   words.focal_px = focal_px;
   words.fov_deg = fov_deg;
@@ -61,6 +63,9 @@ std::shared_ptr<OpenedField> Open(const std::string& path, double focal_px, doub
     options.plane_distance_w = plane_distance;
     options.flip_x = flips[0];
     options.flip_y = flips[1];
+    options.grid = grid;
+    options.layout = PictureLayoutOf(layout);
+    options.is_serpentine = flips[2];
     field->light_field = Take(OpenLightField(path, options));
     field->store = Take(OpenStore(field->light_field, Mosaics::kToRgb));
     field->options = words.WordsToKeep();

@@ -2,6 +2,7 @@
 """Wrong arguments: errors name the argument, and never the types of C++ or the options of programs."""
 import os
 import re
+import shutil
 import threading
 
 import numpy as np
@@ -43,6 +44,21 @@ def test_pairs_of_numpy_are_a_pitch(tmp_path, field, capture):
     for pitch in ([1, 2], np.array([1, 2]), (np.float32(1), 2)):
         opened = lf.open(tmp_path, pitch=pitch, focal_px=np.int64(20), plane_distance=np.float32(5))
         assert opened.grid().pitch == pytest.approx((1, 2))
+
+
+def test_a_grid_orders_images_of_any_names(tmp_path, capture):
+    for place, file in enumerate(sorted(capture.rglob("*.png"))[:6]):
+        shutil.copy(file, tmp_path / f"frame {place + 8}.png")
+    words = {"grid": (3, 2), "pitch": 1, "focal_px": 100}
+    assert lf.open(tmp_path, **words).centres.tolist() == [[x, y, 0] for y in (-0.5, 0.5) for x in (-1, 0, 1)]
+    assert lf.open(tmp_path, serpentine=True, **words).centres[:, 0].tolist() == [-1, 0, 1, 1, 0, -1]
+    with pytest.raises(lf.InputError, match="holds 6 images"):
+        lf.open(tmp_path, **{**words, "grid": (4, 2)})
+    for wrong in ((3,), (3, 2, 1), ("3", "2"), 6, (2.5, 2)):
+        with pytest.raises(TypeError if wrong in (("3", "2"), 6, (2.5, 2)) else ValueError):
+            lf.open(tmp_path, **{**words, "grid": wrong})
+    with pytest.raises(lf.UsageError):
+        lf.open(tmp_path, **{**words, "grid": (0, 6)})
 
 
 def test_names_that_are_not_utf8(tmp_path, capture, path):

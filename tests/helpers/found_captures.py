@@ -166,6 +166,18 @@ def row_and_column(field, source, folder):
     grid_names(field, source, folder, lambda row, column, place: f"{row:02d}_{column:02d}.png")
 
 
+def marked_places(field, source, folder):
+    grid_names(field, source, folder, lambda row, column, place: f"view_r{row}_c{column}.png")
+
+
+def places_with_hyphens(field, source, folder):
+    grid_names(field, source, folder, lambda row, column, place: f"lf-{row}-{column}.png")
+
+
+def places_in_brackets(field, source, folder):
+    grid_names(field, source, folder, lambda row, column, place: f"Cam({row},{column}).png")
+
+
 def numbered_grid(field, source, folder):
     grid_names(field, source, folder, lambda row, column, place: f"input_Cam{place:03d}.png")
 
@@ -225,4 +237,4 @@ OPEN_AS_THEY_ARE = [
     nfd_files, nfc_files, dates_before_names, angle_alone_moved, splits, llff_smaller, half_copied_model,
     matrix_in_frames, not_a_number]
 # Folders whose names lack the pitch; lfimport prints the call that writes a calibration.
-PRINT_A_CALL = [row_and_column, numbered_grid]
+PRINT_A_CALL = [row_and_column, numbered_grid, marked_places, places_with_hyphens, places_in_brackets]

@@ -102,6 +102,32 @@ class FoundCapturesTest(ProgramTestCase):
                 self.assertAlmostEqual(self.report(self.folder / "elsewhere")["spacing_w"]["median"], 2)
                 self.line(f"lfimport {write.__name__} --pitch 2 --focal-px 90 --plane-distance 150")
 
+    def test_images_in_the_order_of_a_grid_open_with_its_size(self):
+        side = 5
+        names = {
+            "sorted": lambda row, column, place: f"frame {place}.png",  # 10 follows 9
+            "serpentine": lambda row, column, place:
+                f"frame {row * side + (column if row % 2 == 0 else side - 1 - column)}.png",
+        }
+        for folder, name in names.items():
+            with self.subTest(folder):
+                found_captures.grid_names(self.field, self.native, self.folder / folder, name)
+                options = "--grid 5x5" + (" --serpentine" if folder == "serpentine" else "")
+                ended = self.line(f"lfimport {folder}", code=3)
+                self.assertIn("give its columns and rows (lfimport --grid)", ended.text)
+                call, = self.line(f"lfimport {folder} {options}", code=3).commands("lfimport")
+                self.assertIn(options, call)
+                self.line(call)
+                self.expect_whole(self.report(self.folder / folder))
+                self.first_picture(folder, folder)
+                self.line(call.replace("--pitch 1", "--pitch 2"))  # the file that was written locks nothing
+                self.assertAlmostEqual(self.report(self.folder / folder)["spacing_w"]["median"], 2)
+        positions = [centres(self.folder / folder) for folder in names]
+        by_row = np.reshape(positions, (2, side, side, 3))
+        np.testing.assert_allclose(by_row[0, 0], by_row[1, 0])
+        self.line("lfimport sorted --grid 5x4 --pitch 1 --focal-px 96", code=3)
+        self.line("lfimport sorted --serpentine", code=2)
+
     def test_a_burst_is_no_grid(self):
         found_captures.images_into(self.native, self.folder / "burst", lambda index, name: f"IMG_4831_{index}.png")
         ended = self.line("lfimport burst", code=3)

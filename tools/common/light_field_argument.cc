@@ -51,8 +51,8 @@ void LightFieldArgument::AddTo(CLI::App& app) {
            "The calibration is a transforms.json, a calibration of COLMAP, Middlebury, LLFF, "
            "HCI or AOS, or an export of another program, such as Metashape or Meshroom "
            "(doc/inputs.md). A packed store is one file, STORE.lfs. A folder of images with "
-           "Stanford "
-           "names is also a light field: the names contain the calibration.")
+           "Stanford names is also a light field: the names contain the calibration. lfimport "
+           "also opens other folders of images, and pictures that hold many views.")
       ->required()
       ->check(NotEmpty());
   AddOptionsTo(app);

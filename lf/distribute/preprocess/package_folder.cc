@@ -9,6 +9,7 @@
 
 #include "lf/core/hash.h"
 #include "lf/core/output_files.h"
+#include "lf/light_field/model/image_files.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -94,8 +95,8 @@ Result<void> PackageFolder::CheckKeeps(const LightField& light_field,
   LF_RETURN_IF_ERROR(replaced.CheckReplacesNone(inputs));
   // The folder of a packed store is its file.
   LF_RETURN_IF_ERROR(replaced.CheckReplacesNone({light_field.folder}));
-  for (const auto* names : {&light_field.image_names, &light_field.mask_names})
-    LF_RETURN_IF_ERROR(replaced.CheckReplacesNone(light_field.folder, *names, "an LF image"));
+  for (const auto& names : {ImageFileNames(light_field), light_field.mask_names})
+    LF_RETURN_IF_ERROR(replaced.CheckReplacesNone(light_field.folder, names, "an LF image"));
   return {};
 }
 

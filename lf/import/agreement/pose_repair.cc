@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "lf/core/natural_order.h"
 #include "lf/core/parse_number.h"
 #include "lf/light_field/model/distinct_intrinsics.h"
 #include "lf/light_field/model/keep_images.h"
@@ -118,31 +119,6 @@ RigidTransform ReadAs(PoseReading reading, const RigidTransform& pose) {
       return {r, centre};
   }
   LF_CHECK(false);
-}
-
-// Compares names so that numbers in them count by their value: 2 before 10.
-bool NaturallyLess(const std::string& a, const std::string& b) {
-  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
-  size_t i = 0, j = 0;
-  while (i < a.size() && j < b.size()) {
-    if (is_digit(a[i]) && is_digit(b[j])) {
-      while (i + 1 < a.size() && a[i] == '0' && is_digit(a[i + 1])) ++i;
-      while (j + 1 < b.size() && b[j] == '0' && is_digit(b[j + 1])) ++j;
-      size_t a_end = i, b_end = j;
-      while (a_end < a.size() && is_digit(a[a_end])) ++a_end;
-      while (b_end < b.size() && is_digit(b[b_end])) ++b_end;
-      if (a_end - i != b_end - j) return a_end - i < b_end - j;
-      const int order = a.compare(i, a_end - i, b, j, b_end - j);
-      if (order != 0) return order < 0;
-      i = a_end;
-      j = b_end;
-    } else {
-      if (a[i] != b[j]) return a[i] < b[j];
-      ++i;
-      ++j;
-    }
-  }
-  return a.size() - i < b.size() - j;
 }
 
 template <class Less>

@@ -13,6 +13,7 @@
 #include "lf/import/check/check_codes.h"
 #include "lf/light_field/model/image_fit.h"
 #include "lf/pixels/files/image_file.h"
+#include "lf/pixels/files/picture_view.h"
 #include "lf/storage/packed/packed_store_file.h"
 
 namespace lf {
@@ -28,7 +29,7 @@ using Finding = CodeChecker::Fault;
 
 Finding CheckFile(const fs::path& path, bool is_mosaic, const Intrinsics& k, ImageCheck check) {
   std::error_code error;
-  if (!fs::exists(path, error))
+  if (!fs::exists(FileOfImage(path), error))
     return {true, fmt::format("{}: {}{}", path.string(), error ? error.message() : "no such file",
                               FilesNearby(path))};
   const Result<ImageFileInfo> info = ReadImageInfo(path);

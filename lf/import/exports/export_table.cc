@@ -258,6 +258,14 @@ void AddFormsThatAreNotRead(std::vector<ExportForm>* forms) {
       .advice = "export the photographs and their cameras from the program that made it",
   });
   forms->push_back({
+      .name = "an HDF5 file, which is not read",
+      .places = {"*.h5", "*.hdf5"},
+      .words = {"\x89HDF\r\n\x1A\n"},
+      .has_poses = true,
+      .advice = "save its array of views (rows, columns, height, width, channels) by numpy.save() "
+                "as a .npy file, and give that",
+  });
+  forms->push_back({
       .name = "an array of Matlab, which is not read",
       .places = {"*.mat"},
       .advice = "write its views as image files by imwrite, with the names NAME_ROW_COL.png, and "

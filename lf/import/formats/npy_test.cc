@@ -106,7 +106,8 @@ TEST(Npy, ShapesBeyondTheFileAreErrors) {
   ExpectNpyError(shape("(4294967295, 4294967295)"), "1 to 2^32 numbers");
   ExpectNpyError(shape("(99999999999999999999,)"), "has the .npy header");
   ExpectNpyError(shape("(-2,)"), "has the .npy header");
-  ExpectNpyError(shape("(2, 1, 1, 1, 1)"), "has the .npy header");
+  ExpectNpyError(shape("(2, 1, 1, 1, 1)"), "holds an array of 5 dimensions");
+  ExpectNpyError(shape("(2, 1, 1, 1, 1, 1)"), "has the .npy header");
   ExpectNpyError(shape("(2"), "has the .npy header");
   ExpectNpyError(shape("()"), "holds 16 bytes of numbers: expected 8");
 }

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -15,6 +16,7 @@
 #include "lf/core/shell_word.h"
 #include "lf/import/exports/export_forms.h"
 #include "lf/import/exports/import_limits.h"
+#include "lf/import/formats/picture_grid.h"
 #include "lf/import/formats/read_aos.h"
 #include "lf/import/formats/read_hci.h"
 #include "lf/import/formats/read_llff.h"
@@ -29,6 +31,7 @@
 #include "lf/light_field/model/masks_beside.h"
 #include "lf/light_field/model/raw_encoding.h"
 #include "lf/light_field/transforms_json/transforms_json.h"
+#include "lf/pixels/files/view_array.h"
 #include "lf/storage/packed/packed_store_file.h"
 
 namespace lf {
@@ -43,6 +46,8 @@ constexpr const char* kAosName = "poses.json";
 std::string_view StanfordOptionOf(const OpenOptions& options) {
   if (options.focal_px) return "{focal_px}";
   if (options.pitch_w) return "{pitch}";
+  if (options.grid) return "{grid}";
+  if (options.layout) return "{layout}";
   if (options.plane_distance_w) return "{plane_distance}";
   if (options.flip_x) return "{flip_x}";
   if (options.flip_y) return "{flip_y}";
@@ -211,18 +216,26 @@ Result<LightField> OpenColmap(const fs::path& model_folder, const OpenOptions& o
   return ReadColmapModel(model_folder, options.images_folder);
 }
 
+// Returns the options of a folder with Stanford names.
+//   asked_for  LIGHTFIELD as the user typed it
+StanfordOptions StanfordOptionsOf(const OpenOptions& options, const fs::path& asked_for) {
+  return {.grid = options.grid,
+          .is_serpentine = options.is_serpentine,
+          .focal_px = options.focal_px,
+          .pitch_w = options.pitch_w,
+          .plane_distance_w = options.plane_distance_w,
+          .flip_x = options.flip_x,
+          .flip_y = options.flip_y,
+          .asked_for = asked_for,
+          .import_again = options.import_again};
+}
+
 Result<LightField> OpenStanford(const fs::path& folder, const OpenOptions& options,
                                 const fs::path& asked_for) {
   LF_RETURN_IF_ERROR(CheckNoFov(folder, options));
   LF_RETURN_IF_ERROR(CheckNoImagesFolder(folder, options));
   LogDebug("{}: opened as images with Stanford names", folder.string());
-  return ReadStanfordFolder(folder, {.focal_px = options.focal_px,
-                                     .pitch_w = options.pitch_w,
-                                     .plane_distance_w = options.plane_distance_w,
-                                     .flip_x = options.flip_x,
-                                     .flip_y = options.flip_y,
-                                     .asked_for = asked_for,
-                                     .import_again = options.import_again});
+  return ReadStanfordFolder(folder, StanfordOptionsOf(options, asked_for));
 }
 
 // Completes the encoding after the calibration was read, which may state nothing about the
@@ -359,7 +372,8 @@ std::string PhotographsIn(const fs::path& path) {
       return fmt::format(
           "; {} holds {}{} images, such as {}, but no file with the poses of the cameras: "
           "reconstruct the poses first, for instance with COLMAP (colmap automatic_reconstructor), "
-          "which writes sparse/0",
+          "which writes sparse/0; or, if a regular grid of cameras recorded them in the order of "
+          "their names, give its columns and rows ({{lfimport grid}})",
           folder.string(), entry_count > kMostEntries ? "at least " : "", count, first);
   }
   return "";
@@ -380,6 +394,53 @@ std::string LightFieldsBelow(const fs::path& folder) {
   std::sort(names.begin(), names.end());
   return fmt::format("; but there is a light field in {}/: {}", fmt::join(names, "/, "),
                      ShellCommand({"lfimport", FileArgument(folder / names[0])}));
+}
+
+// Opens a picture that holds the views of a grid of cameras.
+//   asked_for  the picture, or its folder, as the user typed it
+Result<LightField> OpenPicture(const fs::path& path, const OpenOptions& options,
+                               const fs::path& asked_for) {
+  std::optional<PictureGrid> grid = PictureGridOfName(path.filename().string());
+  if (options.layout && (!grid || grid->layout != *options.layout))
+    grid = PictureGrid{.layout = *options.layout, .grid = {0, 0}};
+  if (options.grid) {
+    if (!grid) grid.emplace();
+    grid->grid = *options.grid;
+  }
+  if (!grid || grid->grid[0] < 1 || grid->grid[1] < 1)
+    return InputError(fmt::format(
+        "{}: is a picture: if it holds the views of a grid of cameras, give their columns and rows "
+        "({{lfimport grid}}), and {{lfimport layout}} if they do not lie side by side",
+        path.string()));
+  LF_RETURN_IF_ERROR(CheckNoFov(path, options));
+  LF_RETURN_IF_ERROR(CheckNoImagesFolder(path, options));
+  LogDebug("{}: opened as a picture of {} x {} views ({})", path.string(), grid->grid[0],
+           grid->grid[1], NameOf(grid->layout));
+  StanfordOptions picture = StanfordOptionsOf(options, asked_for);
+  picture.picture = path.filename().string();
+  picture.picture_grid = *grid;
+  return ReadStanfordFolder(path.parent_path(), picture);
+}
+
+// Opens an array of views, which states its rows and columns.
+Result<LightField> OpenArray(const fs::path& path, const OpenOptions& options) {
+  LF_RETURN_IF_ERROR(CheckNoFov(path, options));
+  LF_RETURN_IF_ERROR(CheckNoImagesFolder(path, options));
+  if (options.grid || options.layout)
+    return UsageError(fmt::format(
+        "{}: {} is an array, which states the rows and columns of its views: leave the option out",
+        options.grid ? "{grid}" : "{layout}", path.string()));
+  LF_ASSIGN_OR_RETURN(const ViewArray array, ReadViewArray(path));
+  LogDebug("{}: opened as an array of {} x {} views", path.string(), array.columns, array.rows);
+  StanfordOptions views = StanfordOptionsOf(options, path);
+  views.picture = path.filename().string();
+  views.picture_grid = {.layout = PictureLayout::kArray, .grid = {array.columns, array.rows}};
+  return ReadStanfordFolder(path.parent_path(), views);
+}
+
+bool HoldsImages(const fs::path& folder) {
+  const Result<std::vector<std::string>> names = SortedImageNames(folder);
+  return names && !names->empty();
 }
 
 bool HoldsGrid(const fs::path& folder) {
@@ -403,8 +464,8 @@ std::optional<Result<LightField>> OpenOwnForm(const fs::path& path, const OpenOp
   std::error_code error;
   const auto has_export = [&] { return !ExportsIn(path, /*reads=*/true).empty(); };
   // Options that only names need ask for the names.
-  const bool passes_over =
-      (options.passes_over_own || !StanfordOptionOf(options).empty()) && HoldsOwnAndItsSource(path);
+  const bool passes_over = (options.passes_over_own || !StanfordOptionOf(options).empty()) &&
+                           HoldsOwnAndItsSource(path, options.grid.has_value());
   if (passes_over)
     LogInfo("{}: was written by lfimport: the calibration from which it was made is read instead",
             (path / kCalibrationName).string());
@@ -427,8 +488,12 @@ std::optional<Result<LightField>> OpenOwnForm(const fs::path& path, const OpenOp
   if (const std::vector<fs::path> splits = SplitsIn(path); !splits.empty())
     return OpenSplits(splits, options);
   for (const fs::path& folder : {path, path / kImagesName}) {
+    const bool is_any = options.layout || (options.grid && *options.grid != std::array{1, 1});
+    if (const std::optional<fs::path> picture = PictureOfViewsIn(folder, is_any))
+      return OpenPicture(*picture, options, path);
     const StanfordNames names = FindStanfordNames(folder);
-    if (names == StanfordNames::kGrid || (names == StanfordNames::kSeries && options.pitch_w)) {
+    if (names == StanfordNames::kGrid || (names == StanfordNames::kSeries && options.pitch_w) ||
+        (options.grid && HoldsImages(folder))) {
       Result<LightField> opened = OpenStanford(folder, options, path);
       if (opened || !StanfordOptionOf(options).empty() || !has_export()) return opened;
       LogInfo("{}: the names of the images do not state the whole calibration", folder.string());
@@ -481,13 +546,15 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
   if (!fs::exists(status))
     return InputError(fmt::format("{}: no such file or folder", path.string()));
   if (fs::is_directory(status)) return OpenFolder(path, options);
+  if (path.extension() == ".npy" && HoldsViewArray(path)) return OpenArray(path, options);
   if (std::optional<Result<LightField>> opened = OpenFile(path, options)) return *opened;
+  if (IsImageName(path.filename().string())) return OpenPicture(path, options, path);
   return InputError(
       fmt::format("{}: is not a light field: expected a transforms.json, a NAME_par.txt "
                   "(Middlebury), a poses_bounds.npy (LLFF), a parameters.cfg (4D Light Field "
                   "Benchmark), a poses.json (AOS), a packed store "
                   "(STORE.lfs) or the folder of one, the folder of a COLMAP model, a folder "
-                  "of images, or an export of another program ({})",
+                  "of images, a picture of many views, or an export of another program ({})",
                   path.string(), ListOfExportForms()));
 }
 
@@ -523,13 +590,15 @@ bool HoldsLightField(const fs::path& folder) {
          !PackedStoresIn(folder).empty() || !ExportsIn(folder, /*reads=*/true).empty();
 }
 
-bool HoldsOwnAndItsSource(const fs::path& folder) {
+bool HoldsOwnAndItsSource(const fs::path& folder, bool has_grid) {
   std::error_code error;
   if (!fs::exists(folder / kCalibrationName, error)) return false;
   const Result<bool> is_own = IsAsWritten(folder / kCalibrationName, kImportProgram);
   if (!is_own || !*is_own) return false;
   const Result<std::optional<fs::path>> model = FindColmapModel(folder);
   if (model && *model) return true;
+  if (has_grid && (HoldsImages(folder) || HoldsImages(folder / kImagesName))) return true;
+  if (PictureOfViewsIn(folder, false)) return true;
   const Result<std::optional<fs::path>> other = OtherCalibrationIn(folder);
   return (other && *other) || !SplitsIn(folder).empty() || HoldsGrid(folder) ||
          !ExportsIn(folder, /*reads=*/true).empty();

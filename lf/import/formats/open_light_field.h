@@ -14,6 +14,8 @@
 
 namespace lf {
 
+enum class PictureLayout;  // import/formats/picture_grid.h
+
 struct OpenOptions {
   // focal_px to flip_y complete or override what the file names in a folder with Stanford names say
   // (StanfordOptions, import/formats/read_stanford.h), and focal_px also trajectories of TUM's form
@@ -22,6 +24,9 @@ struct OpenOptions {
   // options for the others.
   std::optional<double> focal_px = {};
   std::optional<Vec2> pitch_w = {};
+  std::optional<std::array<int, 2>> grid = {};
+  bool is_serpentine = false;
+  std::optional<PictureLayout> layout = {};  // how one picture holds the views
   std::optional<double> plane_distance_w = {};
   bool flip_x = false;
   bool flip_y = false;
@@ -61,18 +66,24 @@ bool HoldsLightField(const std::filesystem::path& folder);
 
 // Returns true if the folder holds both a transforms.json that lfimport wrote and nobody changed,
 // and a calibration of another form, from which it may have been made.
-bool HoldsOwnAndItsSource(const std::filesystem::path& folder);
+//   has_grid  true: images of any names are such a calibration, because OpenOptions::grid orders
+//   them
+bool HoldsOwnAndItsSource(const std::filesystem::path& folder, bool has_grid = false);
 
 // Opens a calibration file, or the first of these that it finds in a folder:
 // - transforms.json, or any .json file without M3x4 matrices:
 //   light_field/transforms_json/transforms_json.h
 // - a COLMAP model, in the folder, its sparse/0 or below: light_field/colmap/read_colmap.h
 // - NAME_par.txt: import/formats/read_middlebury.h
-// - poses_bounds.npy, or any .npy file: import/formats/read_llff.h
+// - poses_bounds.npy, or any .npy file of two dimensions: import/formats/read_llff.h
 // - parameters.cfg, or any .cfg file: import/formats/read_hci.h
 // - poses.json, or any .json file with M3x4 matrices: import/formats/read_aos.h
 // - transforms_train.json, transforms_val.json and transforms_test.json: their union
 // - images with Stanford names, in the folder or its images/: import/formats/read_stanford.h
+// - a .npy file of four or five dimensions: pixels/files/view_array.h
+// - a picture that holds the views of a grid of cameras, or a folder with one picture whose name
+// says
+//   so: import/formats/picture_grid.h
 // - STORE.lfs: storage/packed/packed_store_file.h
 // - the exports of other programs, in the order of import/exports/export_table.cc, which tells them
 //   by their names and the words in them

@@ -15,10 +15,12 @@
 #include <vector>
 
 #include "lf/core/log.h"
+#include "lf/core/natural_order.h"
 #include "lf/core/shell_word.h"
 #include "lf/import/exports/import_limits.h"
 #include "lf/import/formats/stanford_name.h"
 #include "lf/light_field/model/distinct_intrinsics.h"
+#include "lf/light_field/model/image_files.h"
 #include "lf/pixels/files/image_file.h"
 
 namespace lf {
@@ -64,6 +66,47 @@ void TakeNumberedGrid(Listing* listing) {
   }
   listing->images = std::move(images);
   listing->others = std::move(others);
+}
+
+// Lists all images of a folder in the order of their names, as those of a grid.
+Result<Listing> ListGrid(const fs::path& folder, const StanfordOptions& options) {
+  LF_ASSIGN_OR_RETURN(std::vector<std::string> names, SortedImageNames(folder));
+  std::stable_sort(names.begin(), names.end(), NaturallyLess);
+  const auto [columns, rows] = *options.grid;
+  const size_t expected = static_cast<size_t>(columns) * static_cast<size_t>(rows);
+  if (names.size() != expected)
+    return InputError(fmt::format(
+        "{}: holds {} images{}, but {{lfimport grid}} is {} x {}, which are {}: move other images "
+        "away, or correct columns and rows",
+        folder.string(), names.size(), names.empty() ? "" : ", the first of which is " + names[0],
+        columns, rows, expected));
+  Listing listing;
+  for (size_t i = 0; i < names.size(); ++i) {
+    const int row = static_cast<int>(i) / columns, along = static_cast<int>(i) % columns;
+    const bool is_backward = options.is_serpentine && row % 2 == 1;
+    listing.images.push_back(
+        {names[i], {row, is_backward ? columns - 1 - along : along, std::nullopt, std::nullopt}});
+  }
+  return listing;
+}
+
+// Lists the views of a picture by the rows and columns of their cameras.
+Result<Listing> ListPicture(const fs::path& folder, const StanfordOptions& options) {
+  const PictureGrid& grid = options.picture_grid;
+  LF_ASSIGN_OR_RETURN(std::vector<ViewOfPicture> views,
+                      ViewsOfPicture(folder / options.picture, grid));
+  Listing listing;
+  for (ViewOfPicture& view : views) {
+    const bool is_backward = options.is_serpentine && view.row % 2 == 1;
+    const int column = is_backward ? grid.grid[0] - 1 - view.column : view.column;
+    listing.images.push_back(
+        {std::move(view.name), {view.row, column, std::nullopt, std::nullopt}});
+  }
+  std::sort(listing.images.begin(), listing.images.end(),
+            [](const StanfordImage& a, const StanfordImage& b) {
+              return std::tie(a.name.row, a.name.column) < std::tie(b.name.row, b.name.column);
+            });
+  return listing;
 }
 
 Result<Listing> ListFolder(const fs::path& folder) {
@@ -124,6 +167,12 @@ double SpacingOf(const std::vector<StanfordImage>& images, const StanfordOptions
 std::string ImportCommand(const fs::path& folder, const std::vector<StanfordImage>& images,
                           const StanfordOptions& options, bool needs_pitch, int width_px) {
   std::vector<std::string> missing;
+  if (options.grid && !options.import_again)
+    missing = {"--grid", fmt::format("{}x{}", (*options.grid)[0], (*options.grid)[1])};
+  if (options.is_serpentine && !options.import_again) missing.push_back("--serpentine");
+  if (!options.picture.empty() && options.picture_grid.layout != PictureLayout::kArray &&
+      !options.import_again)
+    missing.insert(missing.end(), {"--layout", NameOf(options.picture_grid.layout)});
   if (needs_pitch && !(options.pitch_w && options.import_again)) {
     const Vec2 pitch_w = options.pitch_w.value_or(Vec2(1, 1));
     missing.insert(missing.end(), {"--pitch", fmt::format("{},{}", pitch_w.x(), pitch_w.y())});
@@ -136,8 +185,13 @@ std::string ImportCommand(const fs::path& folder, const std::vector<StanfordImag
     missing.insert(missing.end(),
                    {"--plane-distance", fmt::format("{:.3g}", 100 * SpacingOf(images, options))});
   if (options.import_again) return options.import_again(missing);
-  const std::string name = FileArgument(options.asked_for.empty() ? folder : options.asked_for);
-  std::vector<std::string> words = {"lfimport", name, "-o", name};
+  const fs::path asked_for = options.asked_for.empty() ? folder : options.asked_for;
+  // The folder for the calibration of a picture has its name.
+  const fs::path output = options.picture.empty() || asked_for.filename() != options.picture
+                              ? asked_for
+                              : fs::path(asked_for).replace_extension();
+  std::vector<std::string> words = {"lfimport", FileArgument(asked_for), "-o",
+                                    FileArgument(output)};
   words.insert(words.end(), missing.begin(), missing.end());
   return ShellCommand(words);
 }
@@ -164,6 +218,10 @@ Result<void> CheckOptions(const StanfordOptions& options) {
     return UsageError(
         fmt::format("the pitch ({{pitch}}) is {}, {} world units: expected above 0 and at most 1e9",
                     pitch_w.x(), pitch_w.y()));
+  if (options.grid && std::min((*options.grid)[0], (*options.grid)[1]) < 1)
+    return UsageError(
+        fmt::format("the grid ({{grid}}) has {} columns and {} rows: expected at least 1 of each",
+                    (*options.grid)[0], (*options.grid)[1]));
   if (!is_length(options.plane_distance_w.value_or(1)))
     return UsageError(
         fmt::format("the plane distance ({{plane_distance}}) is {} world units: expected above 0 "
@@ -177,12 +235,15 @@ Result<void> CheckComplete(const fs::path& folder, const std::vector<StanfordIma
                            const StanfordOptions& options, int width_px) {
   if (!options.pitch_w && !images[0].name.position)
     return InputError(fmt::format(
-        "{}: the names contain row and column, but neither positions nor the focal length ({}): "
+        "{}: the names {}, but neither positions nor the focal length ({}): "
         "state the pitch and the focal length, and {{plane_distance}} if the images may be "
         "rectified "
         "to one plane, for instance by: {}",
-        folder.string(), images[0].file_name,
-        ImportCommand(folder, images, options, true, width_px)));
+        folder.string(),
+        !options.picture.empty() ? "of its views contain row and column"
+        : options.grid           ? "follow the order of the grid"
+                                 : "contain row and column",
+        images[0].file_name, ImportCommand(folder, images, options, true, width_px)));
   if (options.focal_px) return {};
   const auto lacks_lens = [](const StanfordImage& image) { return !image.name.lens; };
   const auto without = std::find_if(images.begin(), images.end(), lacks_lens);
@@ -236,9 +297,13 @@ Result<Intrinsics> IntrinsicsOf(const StanfordName& name, const ImageFileInfo& i
         fmt::format("the computed focal length is {} px: expected 0.001 to 1e7 px: correct "
                     "{{focal_px}}, or the focal length and sensor width in the file name",
                     k.fx_px));
-  k.fy_px = k.fx_px;
+  k.fy_px =
+      k.fx_px *
+      (options.picture.empty() ? 1 : PixelAspect(options.picture_grid, info.width, info.height));
   const Vec2 shift_px =
-      options.plane_distance_w ? offset_w * k.fx_px / *options.plane_distance_w : Vec2(0, 0);
+      options.plane_distance_w
+          ? Vec2(offset_w.cwiseProduct(Vec2(k.fx_px, k.fy_px)) / *options.plane_distance_w)
+          : Vec2(0, 0);
   k.cx_px = info.width / 2.0 + shift_px.x();
   k.cy_px = info.height / 2.0 + shift_px.y();
   if (!(shift_px.cwiseAbs().maxCoeff() <= kLargestPrincipal_px / 2))
@@ -271,7 +336,9 @@ StanfordNames FindStanfordNames(const fs::path& folder) {
 
 Result<LightField> ReadStanfordFolder(const fs::path& folder, const StanfordOptions& options) {
   LF_RETURN_IF_ERROR(CheckOptions(options));
-  LF_ASSIGN_OR_RETURN(const Listing listing, ListFolder(folder));
+  LF_ASSIGN_OR_RETURN(const Listing listing, !options.picture.empty() ? ListPicture(folder, options)
+                                             : options.grid           ? ListGrid(folder, options)
+                                                                      : ListFolder(folder));
   LF_RETURN_IF_ERROR(CheckPlaces(folder, listing.images));
   LF_ASSIGN_OR_RETURN(const ImageFileInfo info,
                       ReadImageInfo(folder / listing.images[0].file_name));
@@ -301,7 +368,9 @@ Result<LightField> ReadStanfordFolder(const fs::path& folder, const StanfordOpti
     light_field.image_names.push_back(image.file_name);
   }
   light_field.intrinsics = distinct.Take();
-  light_field.encoding.max_radiance = DefaultMaxRadiance(light_field.image_names);
+  // Arrays of floats have no name that tells them from those of integers.
+  light_field.encoding.max_radiance =
+      info.is_float ? kFloatMaxRadiance : DefaultMaxRadiance(light_field.image_names);
   return light_field;
 }
 

@@ -3,9 +3,11 @@
 // Archive (doc/formats/stanford.md):
 //
 //   [NAME_]ROW_COL_Y_X[_FOCALMM_SENSORMM].ext    positions in millimetres
-//   [NAME_]ROW_COL.ext                           a grid, placed by StanfordOptions::pitch_w
+//   [NAME_]ROW_COL.ext                           a grid, placed by StanfordOptions::pitch_w; other
+//                                                ways to write it: stanford_name.h
 //   input_CamNNN.ext                             the same: the cameras of a square grid, numbered
 //                                                row by row
+//   any names                                    the images of StanfordOptions::grid, row by row
 //
 // The cameras look straight ahead (their rotation is the identity) in a world with x right, y down
 // and z into the scene. The camera centres are (X, Y, 0) / 1000 world units, which are then metres.
@@ -13,11 +15,14 @@
 // grid as origin.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "lf/core/result.h"
 #include "lf/core/shell_word.h"
+#include "lf/import/formats/picture_grid.h"
 #include "lf/light_field/model/light_field.h"
 
 namespace lf {
@@ -35,8 +40,18 @@ enum class StanfordNames {
 StanfordNames FindStanfordNames(const std::filesystem::path& folder);
 
 // Values that the file names may lack. Only lfimport offers all of them as options.
-// ReadStanfordFolder() returns kUsage if a pitch or plane_distance_w is outside (0, 1e9].
+// ReadStanfordFolder() returns kUsage if a pitch or plane_distance_w is outside (0, 1e9], or if a
+// side of the grid is below 1.
 struct StanfordOptions {
+  // Columns and rows of the cameras whose images the folder holds, in the order of their names
+  // (numbers by their value), from the upper left camera on, row by row. The names are not read
+  // otherwise.
+  std::optional<std::array<int, 2>> grid = {};
+  // One picture in the folder, which holds the views of a grid of cameras side by side or
+  // interleaved; its columns and rows replace those of `grid`.
+  std::string picture = {};  // the name of its file; empty: each LF image has a file of its own
+  PictureGrid picture_grid = {};
+  bool is_serpentine = false;  // every second row of `grid` was recorded from right to left
   std::optional<double> focal_px = {};  // focal length of all cameras; overrides the file names
   // Distance from one column (x), and from one row (y), to the next; overrides positions in the
   // names.
@@ -57,14 +72,16 @@ struct StanfordOptions {
   CallAgain import_again = {};
 };
 
-// Reads all images whose names ParseStanfordName() accepts or, if there are none, those that
-// NumberOfHciName() accepts, sorted by row and column. All images
-// get the size that the header of the first one states; the focal length is FOCALMM / SENSORMM *
-// width pixels. Other files, and images whose names state no position if others state one, are left
-// out with a warning that states their number and the names of the first three. kInput: no such
-// name; two images with the same row and column; names that lack the position or the focal length
-// (the message contains the lfimport command that adds it); a focal length in only some of the
-// names, or out of range; a position beyond 1e12 world units; an unreadable first image.
+// Reads the views of a picture if StanfordOptions::picture is given, and all images of the folder
+// if StanfordOptions::grid is. Otherwise reads those whose names ParseStanfordName() accepts or, if
+// there are none, those that NumberOfHciName() accepts, sorted by row and column. All images get
+// the size that the header of the first one states; the focal length is FOCALMM / SENSORMM * width
+// pixels. Other files, and images whose names state no position if others state one, are left out
+// with a warning that states their number and the names of the first three. kInput: no such name;
+// another number of images than the grid has; two images with the same row and column; names that
+// lack the position or the focal length (the message contains the lfimport command that adds it); a
+// focal length in only some of the names, or out of range; a position beyond 1e12 world units; an
+// unreadable first image.
 Result<LightField> ReadStanfordFolder(const std::filesystem::path& folder,
                                       const StanfordOptions& options = {});
 

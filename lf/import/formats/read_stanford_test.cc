@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -57,6 +59,35 @@ TEST_F(StanfordFolderTest, TheAxisOfAnOddImageIsTheMiddleOfAPixel) {
   ASSERT_TRUE(light_field) << light_field.error().message;
   EXPECT_EQ(light_field->intrinsics[0].cx_px, 18.5);
   EXPECT_EQ(light_field->intrinsics[0].cy_px, 10.5);
+}
+
+TEST_F(StanfordFolderTest, AGridOrdersImagesOfAnyNames) {
+  for (const char* name : {"a 1.png", "a 2.png", "a 9.png", "a 10.png", "a 11.png", "b.png"})
+    AddImage(name);
+  StanfordOptions options = {.grid = std::array{3, 2}, .focal_px = 30, .pitch_w = Vec2(1, 2)};
+  const auto centres_of = [&] {
+    const Result<LightField> light_field = ReadStanfordFolder(folder_, options);
+    EXPECT_TRUE(light_field) << light_field.error().message;
+    std::map<std::string, Vec3> centres;
+    for (uint32_t i = 0; light_field && i < light_field->size(); ++i)
+      centres[light_field->image_names[i]] = light_field->Camera({i}).CentreWorld();
+    return centres;
+  };
+  std::map<std::string, Vec3> centres = centres_of();
+  EXPECT_EQ(centres["a 1.png"], Vec3(-1, -1, 0));
+  EXPECT_EQ(centres["a 9.png"], Vec3(1, -1, 0));
+  EXPECT_EQ(centres["a 10.png"], Vec3(-1, 1, 0));
+  EXPECT_EQ(centres["b.png"], Vec3(1, 1, 0));
+  options.is_serpentine = true;
+  centres = centres_of();
+  EXPECT_EQ(centres["a 9.png"], Vec3(1, -1, 0));
+  EXPECT_EQ(centres["a 10.png"], Vec3(1, 1, 0));
+  EXPECT_EQ(centres["b.png"], Vec3(-1, 1, 0));
+  options.grid = std::array{3, 3};
+  EXPECT_NE(ReadStanfordFolder(folder_, options).error().message.find("holds 6 images"),
+            std::string::npos);
+  options.grid = std::array{0, 6};
+  EXPECT_EQ(ReadStanfordFolder(folder_, options).error().kind, ErrorKind::kUsage);
 }
 
 TEST_F(StanfordFolderTest, OtherFilesAreLeftOutWithAWarning) {

@@ -2,6 +2,7 @@
 #include "lf/import/formats/stanford_name.h"
 
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <system_error>
@@ -50,12 +51,60 @@ std::optional<StanfordName> ParsePosition(const std::string_view* fields) {
   return name;
 }
 
+// Removes the digits at the end of `text`, and returns them.
+std::string_view TakeDigits(std::string_view* text) {
+  const size_t end = text->find_last_not_of("0123456789") + 1;  // 0 if there are digits alone
+  const std::string_view digits = text->substr(end);
+  text->remove_suffix(digits.size());
+  return digits;
+}
+
+// Removes `word` from the end of `text`, in upper or lower case. Returns false if it is not there.
+bool TakeWord(std::string_view word, std::string_view* text) {
+  if (text->size() < word.size()) return false;
+  const std::string_view end = text->substr(text->size() - word.size());
+  for (size_t i = 0; i < word.size(); ++i)
+    if (std::tolower(static_cast<unsigned char>(end[i])) != word[i]) return false;
+  text->remove_suffix(word.size());
+  return true;
+}
+
+// Returns true if a name may end before a word or number: it is empty, or ends in no letter or
+// digit.
+bool IsAtBoundary(std::string_view before) {
+  return before.empty() || std::isalnum(static_cast<unsigned char>(before.back())) == 0;
+}
+
+// Parses a name that ends in rROW_cCOL, ROW-COL or (ROW,COL).
+std::optional<StanfordName> ParseMarkedPlace(std::string_view stem) {
+  const bool has_bracket = TakeWord(")", &stem);
+  const std::string_view column = TakeDigits(&stem);
+  std::string_view row;
+  bool fits = false;
+  if (has_bracket) {
+    while (TakeWord(" ", &stem)) continue;
+    if (!TakeWord(",", &stem)) return std::nullopt;
+    row = TakeDigits(&stem);
+    fits = TakeWord("(", &stem);
+  } else if (TakeWord("col", &stem) || TakeWord("c", &stem)) {
+    if (!TakeWord("_", &stem)) TakeWord("-", &stem);
+    row = TakeDigits(&stem);
+    fits = (TakeWord("row", &stem) || TakeWord("r", &stem)) && IsAtBoundary(stem);
+  } else if (TakeWord("-", &stem)) {
+    row = TakeDigits(&stem);
+    fits = stem.empty() || stem.ends_with('-');
+  }
+  const std::string_view fields[] = {row, column};
+  return fits ? ParseGridPlace(fields) : std::nullopt;
+}
+
 }  // namespace
 
 std::optional<StanfordName> ParseStanfordName(std::string_view file_name) {
   if (!IsImageName(file_name)) return std::nullopt;
   std::string_view stem = file_name.substr(0, file_name.rfind('.'));
   if (stem.ends_with('_')) stem.remove_suffix(1);
+  if (const std::optional<StanfordName> name = ParseMarkedPlace(stem)) return name;
   // Splits off at most the last six fields. The rest is NAME, which may be empty or missing.
   std::array<std::string_view, 6> fields;
   size_t count = 0;

@@ -60,6 +60,22 @@ TEST(StanfordName, MayLackTheNameBeforeTheNumbers) {
   EXPECT_EQ(with_lens->row, 7);
 }
 
+TEST(StanfordName, MayMarkRowAndColumn) {
+  for (const char* file_name :
+       {"view_r7_c12.png", "r07_c12.jpg", "NAME_R7_C12.ppm", "a_row7_col12.png", "r7c12.png",
+        "x-r007-c012.png", "lf-7-12.png", "007-012.png", "Cam(7,12).png", "Cam (7, 12).png"}) {
+    const auto name = ParseStanfordName(file_name);
+    ASSERT_TRUE(name) << file_name;
+    EXPECT_EQ(name->row, 7) << file_name;
+    EXPECT_EQ(name->column, 12) << file_name;
+    EXPECT_FALSE(name->position);
+  }
+  for (const char* file_name :
+       {"doctor7_c12.png", "pic12.png", "r7_c.png", "lf7-12.png", "(7,12.png", "7,12).png",
+        "(7,).png", "r7_x12.png", "-12.png", "r_c12.png"})
+    EXPECT_FALSE(ParseStanfordName(file_name)) << file_name;
+}
+
 TEST(StanfordName, TheBenchmarkNumbersItsCameras) {
   EXPECT_EQ(NumberOfHciName("input_Cam000.png"), 0);
   EXPECT_EQ(NumberOfHciName("input_Cam123.jpg"), 123);

@@ -6,9 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -18,7 +16,6 @@
 #include "lf/camera/fit_surface.h"
 #include "lf/core/file.h"
 #include "lf/core/log.h"
-#include "lf/core/parse_number.h"
 #include "lf/pixels/files/image_file.h"
 
 namespace lf {
@@ -50,20 +47,6 @@ Result<void> CheckPlaces(int64_t width, int64_t height, const std::string& name)
     return InputError(fmt::format("{}: {} x {} places; expected 1 to {} in all", name, width,
                                   height, kMostPlaces));
   return {};
-}
-
-// Reads the next word of the head of a PFM file. Words end at one space or line feed.
-std::string_view NextWord(std::string_view* rest) {
-  size_t begin = 0;
-  while (begin < rest->size() && ((*rest)[begin] == ' ' || (*rest)[begin] == '\n' ||
-                                  (*rest)[begin] == '\r' || (*rest)[begin] == '\t'))
-    ++begin;
-  size_t end = begin;
-  constexpr size_t kMostWord = 32;
-  while (end < rest->size() && end - begin < kMostWord && (*rest)[end] > ' ') ++end;
-  const std::string_view word = rest->substr(begin, end - begin);
-  rest->remove_prefix(end);
-  return word;
 }
 
 // A height map in coordinates in which sample (column, row) is at x = column and y = row, and z is
@@ -296,44 +279,9 @@ class SurfaceMaker {
 
 }  // namespace
 
-Result<Image<float>> ParsePfm(std::string_view bytes, const std::string& name) {
-  std::string_view rest = bytes;
-  const std::string_view magic = NextWord(&rest);
-  if (magic != "Pf")
-    return InputError(fmt::format("{}: no PFM file with one channel, which begins with \"Pf\"{}",
-                                  name, magic == "PF" ? "; it has three channels" : ""));
-  const std::optional<double> width = ParseNumber(NextWord(&rest)),
-                              height = ParseNumber(NextWord(&rest));
-  const std::optional<double> scale = ParseNumber(NextWord(&rest));
-  if (!width || !height || !scale || *scale == 0 || std::abs(*width) > 1e9 ||
-      std::abs(*height) > 1e9 || *width != std::floor(*width) || *height != std::floor(*height) ||
-      rest.empty())
-    return InputError(fmt::format(
-        "{}: the head of the PFM file is damaged; expected width, height and scale", name));
-  const auto columns = static_cast<int64_t>(*width), rows = static_cast<int64_t>(*height);
-  LF_RETURN_IF_ERROR(CheckPlaces(columns, rows, name));
-  rest.remove_prefix(1);  // the single white space behind the head
-  const auto size = static_cast<size_t>(columns * rows) * sizeof(float);
-  if (rest.size() < size)
-    return InputError(
-        fmt::format("{}: truncated: {} bytes of numbers, expected {}", name, rest.size(), size));
-  Image<float> image(static_cast<int>(columns), static_cast<int>(rows));
-  const bool is_big_endian = *scale > 0;
-  const char* at = rest.data();
-  for (int y = image.height() - 1; y >= 0; --y)
-    for (int x = 0; x < image.width(); ++x, at += sizeof(float)) {
-      char raw[sizeof(float)];
-      std::memcpy(raw, at, sizeof(raw));
-      if (is_big_endian != (std::endian::native == std::endian::big)) std::reverse(raw, raw + 4);
-      std::memcpy(&image.at(x, y), raw, sizeof(raw));
-    }
-  return image;
-}
-
 Result<Image<float>> ReadSurfaceFile(const fs::path& file, const FocalSurfaceSource& source) {
   const std::string name = file.string();
   LF_ASSIGN_OR_RETURN(const std::string bytes, ReadFile(file, kMostFileBytes));
-  if (bytes.starts_with("Pf") || bytes.starts_with("PF")) return ParsePfm(bytes, name);
   LF_ASSIGN_OR_RETURN(const ImageFileInfo info, ReadImageInfoBytes(bytes, name));
   LF_RETURN_IF_ERROR(CheckPlaces(info.width, info.height, name));
   const int channel = ChannelOf(info);

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "lf/camera/path/camera_path.h"
@@ -20,19 +19,15 @@
 
 namespace lf {
 
-// Reads a picture of one number for each place: the channel Z of an EXR file, the only channel of
-// any other file of ReadImage(), or a PFM file with one channel ("Pf"). Integers stay as stored:
-// 0 to 255 or 65535. Returns [height][width], from the uppermost row on.
+// Reads a picture of one number for each place: the channel Z of an EXR file, or the only channel
+// of any other file of ReadImage(), such as PFM. Integers stay as stored: 0 to 255 or 65535.
+// Returns [height][width], from the uppermost row on.
 //   source  its kind and scale are read: without a scale, depths of 8 bits are refused, because
 //           they are a picture for people
 // kInput: the file cannot be read, has no such channel, or more than 2^28 places; depths of 8 bits
 // without a scale.
 Result<Image<float>> ReadSurfaceFile(const std::filesystem::path& file,
                                      const FocalSurfaceSource& source);
-
-// Reads a PFM file of one channel; messages call it `name`. kInput: it is damaged, truncated, or of
-// another kind.
-Result<Image<float>> ParsePfm(std::string_view bytes, const std::string& name);
 
 // Returns the inverse depths of width x height elements, from a depth picture of the same view,
 // whose places may be larger or smaller than elements. The centre of an element lies between four

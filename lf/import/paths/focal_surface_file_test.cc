@@ -35,22 +35,6 @@ std::string PathText(const std::string& focus, const std::string& more = "") {
          focus;
 }
 
-TEST(FocalSurfaceFile, PfmIsReadFromBelowInBothOrdersOfBytes) {
-  const auto read = ParsePfm(PfmText(2, 2, {3, 4, 1, 2}), "z.pfm");
-  ASSERT_TRUE(read) << read.error().message;
-  EXPECT_EQ(read->at(0, 0), 1);
-  EXPECT_EQ(read->at(1, 0), 2);
-  EXPECT_EQ(read->at(0, 1), 3);
-  const char big[] = {'P', 'f', ' ', '1', ' ', '1', ' ', '1', '\n', 0x3f, -0x40, 0, 0};
-  const auto swapped = ParsePfm({big, sizeof(big)}, "z.pfm");
-  ASSERT_TRUE(swapped) << swapped.error().message;
-  EXPECT_EQ(swapped->at(0, 0), 1.5F);
-  EXPECT_FALSE(ParsePfm(PfmText(2, 2, {3, 4, 1}), "z.pfm"));
-  EXPECT_FALSE(ParsePfm("Pf\n2 2\n0\n", "z.pfm"));
-  EXPECT_NE(ParsePfm("PF\n1 1\n-1\n", "z.pfm").error().message.find("three channels"),
-            std::string::npos);
-}
-
 // Returns the message of opening a path to be rendered; empty if it opens.
 std::string ErrorOf(const std::filesystem::path& file) {
   PathOptions options;

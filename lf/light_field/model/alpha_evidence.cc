@@ -11,6 +11,7 @@
 
 #include "lf/light_field/model/alpha_facts.h"
 #include "lf/light_field/model/channel_use.h"
+#include "lf/light_field/model/image_files.h"
 #include "lf/pixels/files/image_file.h"
 
 namespace lf {
@@ -56,7 +57,7 @@ std::optional<LfImageId> ReadableFrom(const LightField& light_field, size_t firs
   for (size_t i = first; i < std::min(first + kAskedFrom, light_field.size()); ++i) {
     const LfImageId id{static_cast<uint32_t>(i)};
     std::error_code error;
-    if (!std::filesystem::exists(light_field.ImagePath(id), error)) continue;
+    if (!std::filesystem::exists(ImageFileOf(light_field, id), error)) continue;
     const Result<ImageFileInfo> read = ReadImageInfo(light_field.ImagePath(id));
     if (!read) continue;
     *info = *read;

@@ -17,6 +17,7 @@
 #include "lf/core/parse_number.h"
 #include "lf/light_field/model/folded_name.h"
 #include "lf/light_field/model/image_files.h"
+#include "lf/pixels/files/picture_view.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -60,7 +61,7 @@ std::vector<size_t> SpreadOver(size_t count) {
 
 bool IsThere(const fs::path& path) {
   std::error_code error;
-  return fs::is_regular_file(path, error);
+  return fs::is_regular_file(FileOfImage(path), error);
 }
 
 // Returns the path without its first `count` parts, whose slashes are those of Linux.
@@ -317,7 +318,7 @@ Result<size_t> FindImageFiles(const std::optional<fs::path>& images_folder,
       if (ambiguous_count++ == 0) example = fmt::format("{} and {}", *match.rival, *match.name);
       return false;
     }
-    *name = *match.name;
+    *name = *match.name + ViewSuffix(*name);
     return true;
   };
   for (std::string& name : names) {

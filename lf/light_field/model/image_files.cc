@@ -10,9 +10,29 @@
 
 #include "lf/light_field/model/raw_encoding.h"
 #include "lf/pixels/files/image_file.h"
+#include "lf/pixels/files/picture_view.h"
 
 namespace lf {
 namespace fs = std::filesystem;
+
+fs::path ImageFileOf(const LightField& light_field, LfImageId id) {
+  return FileOfImage(light_field.ImagePath(id));
+}
+
+std::vector<std::string> ImageFileNames(const LightField& light_field) {
+  std::vector<std::string> names;
+  for (const std::string& name : light_field.image_names) {
+    std::string file = FileOfImage(name).string();
+    if (names.empty() || names.back() != file) names.push_back(std::move(file));
+  }
+  return names;
+}
+
+size_t SharedPictureBytes(const LightField& light_field) {
+  if (light_field.size() == 0) return 0;
+  const auto view = PictureViewOf(light_field.ImagePath({0}));
+  return view ? SharedPictureBytes(*view) : 0;
+}
 
 Result<std::array<int, 2>> ImageSizeInHeader(const fs::path& image) {
   LF_ASSIGN_OR_RETURN(const ImageFileInfo info, ReadImageInfo(image));
@@ -21,7 +41,9 @@ Result<std::array<int, 2>> ImageSizeInHeader(const fs::path& image) {
 
 bool IsImageName(std::string_view file_name) {
   if (IsRawName(std::string(file_name))) return true;
-  constexpr std::string_view kExtensions[] = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr"};
+  constexpr std::string_view kExtensions[] = {
+      ".png",  ".jpg", ".jpeg", ".tif", ".tiff", ".exr", ".webp", ".jxl", ".heic", ".heif",
+      ".avif", ".jp2", ".j2k",  ".bmp", ".ppm",  ".pgm", ".pbm",  ".pnm", ".pam",  ".hdr"};
   std::string extension = fs::path(file_name).extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return std::find(std::begin(kExtensions), std::end(kExtensions), extension) !=

@@ -10,6 +10,7 @@
 
 #include "lf/core/check.h"
 #include "lf/core/value_named.h"
+#include "lf/pixels/files/picture_view.h"
 
 namespace lf {
 namespace {
@@ -107,9 +108,9 @@ double SrgbFromLinear(double linear) {
 
 double DefaultMaxRadiance(std::span<const std::string> image_names) {
   const auto is_float_file = [](const std::string& name) {
-    std::string extension = std::filesystem::path(name).extension().string();
+    std::string extension = FileOfImage(name).extension().string();
     for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return extension == ".exr" || extension == ".hdr";
+    return extension == ".exr" || extension == ".hdr" || extension == ".pfm";
   };
   return std::any_of(image_names.begin(), image_names.end(), is_float_file) ? kFloatMaxRadiance : 1;
 }

@@ -129,8 +129,8 @@ double LinearFromSrgb(double srgb);
 double SrgbFromLinear(double linear);
 
 // Returns max_radiance for LF images with the gain 1 and no falloff. 16 if an image is a float file
-// (its name ends in .exr or .hdr): highlights up to 16 times display white are kept, and black to
-// white still has 4096 steps. Otherwise 1, which white of integer files is.
+// (its name ends in .exr, .hdr or .pfm): highlights up to 16 times display white are kept, and
+// black to white still has 4096 steps. Otherwise 1, which white of integer files is.
 inline constexpr double kFloatMaxRadiance = 16;
 double DefaultMaxRadiance(std::span<const std::string> image_names);
 

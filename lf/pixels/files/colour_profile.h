@@ -14,8 +14,8 @@
 
 namespace lf {
 
-// Returns the profile that a PNG, JPEG or TIFF file states; "" if there is none. Reads the header
-// alone. Errors as for ReadImageInfo().
+// Returns the profile that a file states: PNG, JPEG, TIFF, WebP, JPEG XL, HEIF, JPEG 2000 or BMP;
+// "" if there is none. Reads the header alone. Errors as for ReadImageInfo().
 Result<std::string> ReadIccProfile(const std::filesystem::path& path);
 
 // Returns the description that a profile states, such as "Display P3", cut to 80 characters; "" if

@@ -97,11 +97,9 @@ ExposureFacts ExposureOfExif(const ByteSource& source, ImageFormat format) {
       return FactsOfTiff(source);
     case ImageFormat::kPng:
       return FactsOfPng(source);
-    case ImageFormat::kExr:
-    case ImageFormat::kRaw:
-      break;
+    default:
+      return {};
   }
-  return {};
 }
 
 }  // namespace lf

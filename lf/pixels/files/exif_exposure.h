@@ -7,10 +7,10 @@
 
 namespace lf {
 
-// Returns the exposure that the Exif data of a file of this format state; no value for camera raw
-// files and EXR files. ExposureTime and FNumber take precedence over the equivalent APEX values
-// (ShutterSpeedValue, ApertureValue). If the sensitivity is missing, or at the limit of its 16
-// bits, RecommendedExposureIndex or ISOSpeed replaces it.
+// Returns the exposure that the Exif data of a file of this format state; no value for other
+// formats than JPEG, TIFF and PNG. ExposureTime and FNumber take precedence over the equivalent
+// APEX values (ShutterSpeedValue, ApertureValue). If the sensitivity is missing, or at the limit of
+// its 16 bits, RecommendedExposureIndex or ISOSpeed replaces it.
 ExposureFacts ExposureOfExif(const ByteSource& source, ImageFormat format);
 
 }  // namespace lf

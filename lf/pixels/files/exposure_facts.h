@@ -18,9 +18,9 @@ struct ExposureFacts {
   std::optional<double> iso;
 };
 
-// Reads the header alone: the Exif data of JPEG, TIFF and PNG files; for camera raw files, what
-// LibRaw reads from them. EXR files state no exposure. Errors are as for ReadImageInfo()
-// (image_file.h), except that damaged Exif data count as missing.
+// Reads the header alone: the Exif data of JPEG, TIFF, PNG, WebP and HEIF files; for camera raw
+// files, what LibRaw reads from them. Other files state no exposure. Errors are as for
+// ReadImageInfo() (image_file.h), except that damaged Exif data count as missing.
 Result<ExposureFacts> ReadExposureFacts(const std::filesystem::path& path);
 
 // Reads the exposure from a file that is in memory; messages call the file `name`.

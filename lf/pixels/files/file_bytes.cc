@@ -17,7 +17,19 @@ FileBytes FileInMemory(std::string_view bytes, const std::string& name) {
     std::copy(part.begin(), part.end(), to.begin());
     return part.size();
   };
-  return {read, bytes.size(), name};
+  return {read, bytes.size(), name, bytes};
+}
+
+std::string_view ContentOf(const FileBytes& file, std::string* read) {
+  if (file.in_memory.data() != nullptr) return file.in_memory;
+  *read = StartOf(file, file.size_bytes);
+  return *read;
+}
+
+std::string StartOf(const FileBytes& file, size_t most) {
+  std::string start(std::min<uint64_t>(most, file.size_bytes), '\0');
+  start.resize(file.read(0, {reinterpret_cast<uint8_t*>(start.data()), start.size()}));
+  return start;
 }
 
 // O_NONBLOCK is set because opening a named pipe would otherwise wait for its writer.

@@ -19,7 +19,16 @@ struct FileBytes {
   ByteSource read;
   uint64_t size_bytes = 0;
   std::string name;  // name of the file, for messages
+  // The bytes of a file in memory; its data() is null for a file on disk.
+  std::string_view in_memory = {};
 };
+
+// Returns all bytes of a file: `in_memory` or, if the file is on disk, `*read`, which it reads them
+// into.
+std::string_view ContentOf(const FileBytes& file, std::string* read);
+
+// Returns the first `most` bytes of a file, or fewer if it ends before.
+std::string StartOf(const FileBytes& file, size_t most);
 
 // Returns a file that consists of `bytes`, which must stay as they are while it is used.
 FileBytes FileInMemory(std::string_view bytes, const std::string& name);

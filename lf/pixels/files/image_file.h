@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads image files (PNG, JPEG, TIFF, EXR, camera raw files) and writes them (all but raw files).
-// No other folder uses OpenEXR, libpng, libtiff, libjpeg or LibRaw.
+// Reads image files (doc/formats/images.md lists the formats) and writes PNG, JPEG, TIFF and EXR
+// files. No other folder uses the libraries of image formats.
 //
-// All functions may be called by many threads at once; none starts threads of its own.
+// Paths may also name a view of a picture, such as mosaic.png#160x120+320+240 (picture_view.h).
+//
+// All functions may be called by many threads at once; none starts threads of its own, but
+// libraries of HEIF files may.
 #pragma once
 
 #include <array>
@@ -69,12 +72,16 @@ Result<ImageFileInfo> ReadImageInfo(const std::filesystem::path& path);
 //   through the linearization table of a DNG. LibRaw decodes these files. It may not detect small
 //   damage within compressed pixels, and does not accept pictures below 22 pixels in width or
 //   height.
+// - Netpbm: values are scaled from the stated white to the full range. PFM and Radiance: floats as
+//   stored. JPEG XL: floats, or integers of up to 16 bits. HEIF: turned as the file says, because
+//   this is part of the picture there.
 // kInput, naming the file: it is missing, unreadable, truncated or damaged (JPEG: also if libjpeg
-// had to guess pixels); it has another format, or pixels of a kind that is not read, such as CMYK
-// colours, deep data, or a raw mosaic that is not Bayer (the message says which); it is an EXR file
-// of several pictures, such as a focus stack, which means that several parts have channels R, G and
-// B; it is larger than 4 GiB, 2^30 pixels or 2^32 values, which is checked before pixels are
-// allocated. kOutput: the machine lacks something (KindOfReadFailure() of core/file.h).
+// had to guess pixels); its format needs a library that is missing (picture_decoder.h); it has
+// another format, or pixels of a kind that is not read, such as CMYK colours, deep data, or a raw
+// mosaic that is not Bayer (the message says which); it is an EXR file of several pictures, such as
+// a focus stack, which means that several parts have channels R, G and B; it is larger than 4 GiB,
+// 2^30 pixels or 2^32 values, which is checked before pixels are allocated. kOutput: the machine
+// lacks something (KindOfReadFailure() of core/file.h).
 Result<StoredImage> ReadImage(const std::filesystem::path& path);
 
 // Reads pixels and header at once.
@@ -89,7 +96,7 @@ struct ImagePart {
   StoredImage image;
   PixelRect rect;
   ImageFileInfo info;
-  // The colour profile that a PNG, JPEG or TIFF file states (colour_profile.h); "" if none.
+  // The colour profile that the file states (colour_profile.h); "" if none.
   std::string icc_profile = {};
 };
 
@@ -98,10 +105,10 @@ struct ImagePart {
 using WantedPixels = std::function<Result<PixelRect>(const ImageFileInfo& info)>;
 
 // Reads at least the wanted pixels, which must contain a pixel of the picture. They have the values
-// that ReadImage() gives. JPEG files are decoded in part if this saves time, files of other formats
-// as a whole; damage is detected anywhere in the file in both cases. Reuses the memory of
-// part->image if it has the right type, because allocating it costs up to a third of the decoding
-// time.
+// that ReadImage() gives. JPEG, Netpbm, PFM and BMP files are decoded in part if this saves time,
+// files of other formats as a whole; damage is detected anywhere in the file in both cases. Reuses
+// the memory of part->image if it has the right type, because allocating it costs up to a third of
+// the decoding time.
 Result<void> ReadImagePart(const std::filesystem::path& path, const WantedPixels& wanted,
                            ImagePart* part);
 

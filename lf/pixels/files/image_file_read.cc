@@ -17,9 +17,11 @@
 #include "lf/pixels/files/image_probe.h"
 #include "lf/pixels/files/picture_decoder.h"
 #include "lf/pixels/files/picture_header.h"
+#include "lf/pixels/files/picture_view.h"
 #include "lf/pixels/files/read_jpeg.h"
 #include "lf/pixels/files/read_raw.h"
 #include "lf/pixels/files/reduced_jpeg.h"
+#include "lf/pixels/files/rows_on_disk.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -34,6 +36,22 @@ Result<std::unique_ptr<PictureDecoder>> Open(const FileBytes& file, ImageFormat 
       return OpenTiff(file);
     case ImageFormat::kExr:
       return OpenExr(file);
+    case ImageFormat::kNetpbm:
+      return OpenNetpbm(file);
+    case ImageFormat::kPfm:
+      return OpenPfm(file);
+    case ImageFormat::kBmp:
+      return OpenBmp(file);
+    case ImageFormat::kRadiance:
+      return OpenRadiance(file);
+    case ImageFormat::kWebp:
+      return OpenWebp(file);
+    case ImageFormat::kJpeg2000:
+      return OpenJpeg2000(file);
+    case ImageFormat::kJpegXl:
+      return OpenJpegXl(file);
+    case ImageFormat::kHeif:
+      return OpenHeif(file);
     case ImageFormat::kJpeg:
     case ImageFormat::kRaw:
       break;
@@ -98,6 +116,11 @@ Result<std::string> ProfileFrom(const FileBytes& file) {
 
 Result<ExposureFacts> ExposureFrom(const FileBytes& file) {
   LF_ASSIGN_OR_RETURN(const ImageFormat format, ProbeImage(file.read, file.name));
+  if (format == ImageFormat::kWebp || format == ImageFormat::kHeif) {
+    LF_ASSIGN_OR_RETURN(const std::unique_ptr<PictureDecoder> picture, Open(file, format));
+    const std::string exif = picture->Exif();
+    return ExposureOfExif(FileInMemory(exif, file.name).read, ImageFormat::kTiff);
+  }
   if (format != ImageFormat::kRaw) return ExposureOfExif(file.read, format);
   LF_ASSIGN_OR_RETURN(const RawReader raw, RawReader::Open(file.read, file.size_bytes, file.name));
   return raw.exposure();
@@ -147,9 +170,9 @@ Result<void> PartFrom(const FileBytes& file, const WantedPixels& wanted, ImagePa
   LF_ASSIGN_OR_RETURN(const std::unique_ptr<PictureDecoder> picture, OpenSingle(file, format));
   part->info = picture->info();
   part->icc_profile = picture->IccProfile();
-  if (const auto rect = wanted(part->info); !rect) return rect.error();
-  part->rect = {0, 0, part->info.width, part->info.height};
-  return picture->Read(&part->image);
+  LF_ASSIGN_OR_RETURN(const PixelRect rect, wanted(part->info));
+  LF_ASSIGN_OR_RETURN(part->rect, picture->ReadPart(rect, &part->image));
+  return {};
 }
 
 Result<PixelRect> All(const ImageFileInfo& info) {
@@ -196,12 +219,29 @@ auto FromFile(const fs::path& path, const Read& read)
 
 }  // namespace
 
+Result<bool> HasRowsOnDisk(const fs::path& path) { return ReadRowsOnDisk(path, nullptr, nullptr); }
+
+Result<bool> ReadRowsOnDisk(const fs::path& path, const WantedPixels& wanted, ImagePart* part) {
+  return FromFile(path, [&](const FileBytes& file) -> Result<bool> {
+    LF_ASSIGN_OR_RETURN(const ImageFormat format, ProbeImage(file.read, file.name));
+    if (format == ImageFormat::kJpeg || format == ImageFormat::kRaw) return false;
+    LF_ASSIGN_OR_RETURN(const std::unique_ptr<PictureDecoder> picture, Open(file, format));
+    if (!picture->has_rows_on_disk() || part == nullptr) return picture->has_rows_on_disk();
+    part->info = picture->info();
+    part->icc_profile = picture->IccProfile();
+    LF_ASSIGN_OR_RETURN(const PixelRect rect, wanted(part->info));
+    LF_ASSIGN_OR_RETURN(part->rect, picture->ReadPart(rect, &part->image));
+    return true;
+  });
+}
+
 Result<ImageFileInfo> ReadImageInfo(const fs::path& path) {
+  if (const std::optional<PictureView> view = PictureViewOf(path)) return ReadViewInfo(*view);
   return FromFile(path, [](const FileBytes& file) { return InfoFrom(file); });
 }
 
 Result<PictureHeader> ReadPictureHeader(const fs::path& path) {
-  return FromFile(path, [](const FileBytes& file) { return HeaderFrom(file); });
+  return FromFile(FileOfImage(path), [](const FileBytes& file) { return HeaderFrom(file); });
 }
 
 Result<PictureHeader> ReadPictureHeaderBytes(std::string_view bytes, const std::string& name) {
@@ -209,15 +249,17 @@ Result<PictureHeader> ReadPictureHeaderBytes(std::string_view bytes, const std::
 }
 
 Result<std::string> ReadStatedText(const fs::path& path, const char* key) {
-  return FromFile(path, [key](const FileBytes& file) { return TextFrom(file, key); });
+  return FromFile(FileOfImage(path), [key](const FileBytes& file) { return TextFrom(file, key); });
 }
 
 Result<std::string> ReadIccProfile(const fs::path& path) {
-  return FromFile(path, [](const FileBytes& file) { return ProfileFrom(file); });
+  if (const auto view = PictureViewOf(path); view && view->is_of_array) return std::string();
+  return FromFile(FileOfImage(path), [](const FileBytes& file) { return ProfileFrom(file); });
 }
 
 Result<ExposureFacts> ReadExposureFacts(const fs::path& path) {
-  return FromFile(path, [](const FileBytes& file) { return ExposureFrom(file); });
+  if (const auto view = PictureViewOf(path); view && view->is_of_array) return ExposureFacts();
+  return FromFile(FileOfImage(path), [](const FileBytes& file) { return ExposureFrom(file); });
 }
 
 Result<ExposureFacts> ReadExposureFactsBytes(std::string_view bytes, const std::string& name) {
@@ -229,10 +271,13 @@ Result<ImageFileInfo> ReadImageInfoBytes(std::string_view bytes, const std::stri
 }
 
 Result<int> ReadReducedJpeg(const fs::path& path, const WantedReduction& wanted, ImagePart* part) {
+  if (PictureViewOf(path)) return 1;
   return FromFile(path, [&](const FileBytes& file) { return ReducedFrom(file, wanted, part); });
 }
 
 Result<void> ReadImagePart(const fs::path& path, const WantedPixels& wanted, ImagePart* part) {
+  if (const std::optional<PictureView> view = PictureViewOf(path))
+    return ReadViewPart(*view, wanted, part);
   LF_ASSIGN_OR_RETURN(const std::string bytes, ReadFile(path));
   return ReadImagePartBytes(bytes, path.string(), wanted, part);
 }
@@ -243,8 +288,9 @@ Result<void> ReadImagePartBytes(std::string_view bytes, const std::string& name,
 }
 
 Result<ImageWithInfo> ReadImageWithInfo(const fs::path& path) {
-  LF_ASSIGN_OR_RETURN(const std::string bytes, ReadFile(path));
-  return ReadImageWithInfoBytes(bytes, path.string());
+  ImagePart part;
+  LF_RETURN_IF_ERROR(ReadImagePart(path, All, &part));
+  return ImageWithInfo{std::move(part.image), std::move(part.info)};
 }
 
 Result<ImageWithInfo> ReadImageWithInfoBytes(std::string_view bytes, const std::string& name) {

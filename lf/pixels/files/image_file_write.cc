@@ -78,11 +78,9 @@ Result<std::string> Encode(ImageFormat format, const PictureRows& picture) {
       return EncodeTiff(picture);
     case ImageFormat::kJpeg:
       return EncodeJpegRows(picture);
-    case ImageFormat::kExr:
-    case ImageFormat::kRaw:
-      break;
+    default:
+      LF_CHECK(false);
   }
-  LF_CHECK(false);
 }
 
 // Returns a picture of the pixels. `convert` converts each of their values to type To.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <optional>
@@ -129,6 +130,92 @@ bool IsOtherRaw(std::span<const uint8_t> start) {
   return false;
 }
 
+// A format, and the bytes that its files have at an offset.
+template <class Format>
+struct Signature {
+  size_t offset;
+  std::string_view magic;
+  Format format;
+};
+
+template <class Format, size_t N>
+std::optional<Format> FormatBySignature(std::span<const uint8_t> start,
+                                        const Signature<Format> (&signatures)[N]) {
+  for (const Signature<Format>& signature : signatures)
+    if (start.size() >= signature.offset &&
+        StartsWith(start.subspan(signature.offset), signature.magic))
+      return signature.format;
+  return std::nullopt;
+}
+
+// Returns the format of a file that is read by its first bytes alone.
+std::optional<ImageFormat> SimpleFormat(std::span<const uint8_t> start) {
+  using namespace std::string_view_literals;
+  // The magic numbers of Netpbm are followed by a blank.
+  if (start.size() >= 3 && start[0] == 'P' && std::isspace(start[2]) != 0) {
+    if (start[1] >= '1' && start[1] <= '7') return ImageFormat::kNetpbm;
+    if (start[1] == 'f' || start[1] == 'F') return ImageFormat::kPfm;
+  }
+  if (StartsWith(start, "RIFF") && start.size() >= 12 && StartsWith(start.subspan(8), "WEBP"))
+    return ImageFormat::kWebp;
+  // BMP: the two reserved numbers at byte 6 are 0, which tells it from a text that begins with
+  // "BM".
+  if (StartsWith(start, "BM") && start.size() >= 10 && StartsWith(start.subspan(6), "\0\0\0\0"sv))
+    return ImageFormat::kBmp;
+  constexpr Signature<ImageFormat> kSignatures[] = {
+      {0, "\x76\x2f\x31\x01"sv, ImageFormat::kExr},
+      {0, "#?RADIANCE"sv, ImageFormat::kRadiance},
+      {0, "#?RGBE"sv, ImageFormat::kRadiance},
+      {0, "\0\0\0\x0cjP  \r\n\x87\n"sv, ImageFormat::kJpeg2000},
+      {0, "\xff\x4f\xff\x51"sv, ImageFormat::kJpeg2000},
+      {0, "\0\0\0\x0cJXL \r\n\x87\n"sv, ImageFormat::kJpegXl},
+      {0, "\xff\x0a"sv, ImageFormat::kJpegXl},
+      {4, "ftyphei"sv, ImageFormat::kHeif},
+      {4, "ftyphev"sv, ImageFormat::kHeif},
+      {4, "ftypmif1"sv, ImageFormat::kHeif},
+      {4, "ftypmsf1"sv, ImageFormat::kHeif},
+      {4, "ftypavif"sv, ImageFormat::kHeif},
+      {4, "ftypavis"sv, ImageFormat::kHeif},
+  };
+  return FormatBySignature(start, kSignatures);
+}
+
+// Returns the name of a format that is not read, with a hint; "" for unknown bytes.
+std::string_view NameOfForeign(std::span<const uint8_t> start) {
+  using namespace std::string_view_literals;
+  constexpr auto kVideo =
+      "a video: extract its pictures, for instance by ffmpeg, and give their folder"sv;
+  constexpr Signature<std::string_view> kSignatures[] = {
+      {0, "GIF8"sv, "a GIF file: convert it to PNG"sv},
+      {0, "8BPS"sv, "a Photoshop file (PSD): save it as PNG or TIFF"sv},
+      {0, "SDPX"sv, "a DPX file: convert it to TIFF or EXR"sv},
+      {0, "XPDS"sv, "a DPX file: convert it to TIFF or EXR"sv},
+      {0, "DDS "sv, "a DirectDraw surface (DDS): convert it to PNG"sv},
+      {0, "\0\0\1\0"sv, "an icon (ICO): convert it to PNG"sv},
+      {0, "II\xbc\x01"sv, "a JPEG XR file: convert it to TIFF"sv},
+      {0, "gimp xcf"sv, "a file of GIMP (XCF): export it as PNG"sv},
+      {0, "%PDF"sv, "a PDF document: convert its pages to PNG"sv},
+      {0, "<svg"sv, "an SVG drawing: convert it to PNG"sv},
+      {0, "\x89LFP\r\n\x1a\n"sv,
+       "a picture of a Lytro camera: decode it with plenopticam or LFToolbox, which write a folder "
+       "of views"sv},
+      {0, "\x89HDF\r\n\x1a\n"sv,
+       "an HDF5 file: save its views as images, or as an array of NumPy (.npy)"sv},
+      {0, "\x93NUMPY"sv, "a NumPy file: give it as LIGHTFIELD if it holds views"sv},
+      {4, "ftyp"sv, kVideo},
+      {4, "moov"sv, kVideo},
+      {0, "\x1a\x45\xdf\xa3"sv, kVideo},
+      {8, "AVI "sv, kVideo},
+      {0, "PK\3\4"sv, "a ZIP archive: unpack it"sv},
+      {0, "\x1f\x8b"sv, "a gzip archive: unpack it"sv},
+      {0, "version https://git-lfs"sv,
+       "a pointer of Git LFS instead of the picture: fetch it by git lfs pull"sv},
+      {0, "<!DOCTYPE"sv, "a web page instead of a picture: download the picture again"sv},
+      {0, "<html"sv, "a web page instead of a picture: download the picture again"sv},
+  };
+  return FormatBySignature(start, kSignatures).value_or("");
+}
+
 // Returns true if a TIFF file is a camera raw file.
 bool IsRawTiff(const ByteSource& source, std::span<const uint8_t> start) {
   constexpr int kNewSubfileType = 254, kDngVersion = 50706;
@@ -140,7 +227,9 @@ bool IsRawTiff(const ByteSource& source, std::span<const uint8_t> start) {
 }  // namespace
 
 const char* NameOf(ImageFormat format) {
-  constexpr const char* kNames[] = {"PNG", "JPEG", "TIFF", "EXR", "raw"};
+  constexpr const char* kNames[] = {"PNG",       "JPEG",    "TIFF", "EXR",      "raw",
+                                    "Netpbm",    "PFM",     "BMP",  "Radiance", "WebP",
+                                    "JPEG 2000", "JPEG XL", "HEIF"};
   return kNames[static_cast<int>(format)];
 }
 
@@ -153,7 +242,7 @@ Result<void> CheckPixelCount(uint64_t width, uint64_t height, const std::string&
 }
 
 Result<ImageFormat> ProbeImage(const ByteSource& source, const std::string& name) {
-  std::array<uint8_t, 16> head;
+  std::array<uint8_t, 32> head;
   const auto start = std::span<const uint8_t>(head).first(source(0, head));
   if (start.empty()) return InputError(fmt::format("{}: file is empty", name));
   if (StartsWith(start, "\x89PNG\r\n\x1a\n")) {
@@ -164,17 +253,20 @@ Result<ImageFormat> ProbeImage(const ByteSource& source, const std::string& name
     LF_RETURN_IF_ERROR(CheckJpeg(source, name));
     return ImageFormat::kJpeg;
   }
-  if (StartsWith(start, "\x76\x2f\x31\x01")) return ImageFormat::kExr;
+  if (const std::optional<ImageFormat> format = SimpleFormat(start)) return *format;
   using namespace std::string_view_literals;
   for (const std::string_view tiff : {"II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv}) {
     if (!StartsWith(start, tiff)) continue;
     return IsRawTiff(source, start) ? ImageFormat::kRaw : ImageFormat::kTiff;
   }
   if (IsOtherRaw(start)) return ImageFormat::kRaw;
-  return InputError(
-      fmt::format("{}: is not a PNG, JPEG, TIFF, EXR or supported camera raw file: convert it to "
-                  "one of these formats",
-                  name));
+  if (const std::string_view foreign = NameOfForeign(start); !foreign.empty())
+    return InputError(fmt::format("{}: is not a PNG, JPEG or other image file that is read, but {}",
+                                  name, foreign));
+  return InputError(fmt::format(
+      "{}: is not a PNG, JPEG, TIFF, EXR, WebP, JPEG XL, HEIF, JPEG 2000, BMP, PPM, PFM, "
+      "HDR or supported camera raw file: convert it to PNG or TIFF",
+      name));
 }
 
 Result<void> CheckPngIsComplete(const ByteSource& source, const std::string& name) {

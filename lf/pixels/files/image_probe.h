@@ -14,9 +14,24 @@
 
 namespace lf {
 
-enum class ImageFormat { kPng, kJpeg, kTiff, kExr, kRaw };
+enum class ImageFormat {
+  kPng,
+  kJpeg,
+  kTiff,
+  kExr,
+  kRaw,
+  // The formats from here on are read but not written.
+  kNetpbm,
+  kPfm,
+  kBmp,
+  kRadiance,
+  kWebp,
+  kJpeg2000,
+  kJpegXl,
+  kHeif
+};
 
-// Returns "PNG", "JPEG", "TIFF", "EXR" or "raw".
+// Returns "PNG", "JPEG", "TIFF", "EXR", "raw" and so on.
 const char* NameOf(ImageFormat format);
 
 // Largest number of pixels of an image that is read.
@@ -24,7 +39,8 @@ inline constexpr uint64_t kMaxImagePixels = uint64_t{1} << 30;
 
 // Returns the format, which it detects by the content. kRaw is a camera raw file. A TIFF file is
 // kRaw if it is a DNG or a Canon CR2, or if it begins with a thumbnail, because a TIFF decoder
-// would show the thumbnail. kInput: the file is empty, or its format is not read here; a PNG or
+// would show the thumbnail. kInput: the file is empty, or its format is not read here (the message
+// names formats that pictures often have, such as GIF); a PNG or
 // JPEG ends before its size is stated, or claims more than kMaxImagePixels or more than a file of
 // its length can hold; a PNG claims a chunk before its pixels that is longer than the file.
 Result<ImageFormat> ProbeImage(const ByteSource& source, const std::string& name);

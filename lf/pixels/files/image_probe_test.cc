@@ -28,6 +28,16 @@ TEST(ImageProbe, TellsTheFormatByItsFirstBytes) {
   EXPECT_EQ(*Probe("II*\0\x08\0\0\0\0\0\0\0"s), ImageFormat::kTiff);
   EXPECT_EQ(*Probe("MM\0*\0\0\0\x08\0\0\0\0"s), ImageFormat::kTiff);
   EXPECT_EQ(*Probe("\x76\x2f\x31\x01\x02\0\0\0"s), ImageFormat::kExr);
+  EXPECT_EQ(*Probe("P6\n1 1 255\n..."), ImageFormat::kNetpbm);
+  EXPECT_EQ(*Probe("PF\n1 1 -1\n..."), ImageFormat::kPfm);
+  EXPECT_EQ(*Probe("RIFF....WEBPVP8 "), ImageFormat::kWebp);
+  EXPECT_EQ(*Probe("BM....\0\0\0\0"s), ImageFormat::kBmp);
+  EXPECT_EQ(*Probe("#?RADIANCE\n"), ImageFormat::kRadiance);
+  EXPECT_EQ(*Probe("\xff\x4f\xff\x51"), ImageFormat::kJpeg2000);
+  EXPECT_EQ(*Probe("\xff\x0a.."), ImageFormat::kJpegXl);
+  EXPECT_EQ(*Probe("\0\0\0\x1c"s + "ftypavif"), ImageFormat::kHeif);
+  EXPECT_FALSE(Probe("P6.1"));
+  EXPECT_FALSE(Probe("BMP is a text"));
   EXPECT_FALSE(Probe("GIF89a.."));
   EXPECT_FALSE(Probe("II"));
 }

@@ -7,6 +7,21 @@
 
 namespace lf {
 
+Error MissingLibrary(const std::string& name, const char* format, const char* library) {
+  return InputError(
+      fmt::format("{}: {} images need a build with {}: install it and build the programs again, or "
+                  "convert the images to PNG or TIFF",
+                  name, format, library));
+}
+
+Error MissingAtRunTime(const std::string& name, const char* format, const char* library,
+                       const char* package) {
+  return InputError(
+      fmt::format("{}: {} images need {}, which is not installed here: install it (package {} of "
+                  "Debian), or convert the images to PNG or TIFF",
+                  name, format, library, package));
+}
+
 Result<void> CheckPictureSize(int64_t width, int64_t height, int64_t channels,
                               const std::string& name) {
   constexpr int64_t kMaxValues = int64_t{1} << 32;

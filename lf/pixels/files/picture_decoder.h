@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The readers of PNG, TIFF and EXR files. Internal to this folder.
+// The readers of all image files but JPEG and camera raw files. Internal to this folder.
 //
-// Each uses the library of its format: libpng, libtiff, OpenEXR. A library for all formats, such as
-// OpenImageIO, would load some 250 further libraries into every program.
+// Each uses the library of its format, such as libpng, or none if the pixels lie in the file as
+// they are. A library for all formats, such as OpenImageIO, would load some 250 further libraries
+// into every program. The libraries of formats that few people use, which load many others
+// themselves, are loaded when the first such file is read (loaded_library.h).
 #pragma once
 
 #include <cstdint>
@@ -32,6 +34,9 @@ class PictureDecoder {
   virtual StatedProjection projection() const { return {}; }
   // Returns the colour profile (ICC) that the header states; "" if there is none.
   virtual std::string IccProfile() const { return ""; }
+  // Returns the Exif data of a file whose format keeps them in a part of their own, from their TIFF
+  // header on; "" if there are none.
+  virtual std::string Exif() const { return ""; }
   // Number of parts that hold colours. Only the first part is decoded.
   virtual int picture_count() const { return 1; }
   // Returns the text that the header states under this key; "" if there is none.
@@ -40,6 +45,15 @@ class PictureDecoder {
   // if possible. kInput: the file is truncated or damaged anywhere, even if the library could guess
   // what is missing.
   virtual Result<void> Read(StoredImage* image) = 0;
+  // Returns true if ReadPart() reads only the rows of the part.
+  virtual bool has_rows_on_disk() const { return false; }
+  // Decodes at least the pixels `wanted`, which must contain a pixel of the picture, as Read()
+  // does. Returns the rectangle that it decoded: the whole picture, unless the format allows less
+  // work.
+  virtual Result<PixelRect> ReadPart(const PixelRect& /*wanted*/, StoredImage* image) {
+    LF_RETURN_IF_ERROR(Read(image));
+    return PixelRect{0, 0, info().width, info().height};
+  }
 };
 
 // These functions read the header. `file` must outlive the decoder, and must have passed
@@ -48,6 +62,27 @@ class PictureDecoder {
 Result<std::unique_ptr<PictureDecoder>> OpenPng(const FileBytes& file);
 Result<std::unique_ptr<PictureDecoder>> OpenTiff(const FileBytes& file);
 Result<std::unique_ptr<PictureDecoder>> OpenExr(const FileBytes& file);
+Result<std::unique_ptr<PictureDecoder>> OpenNetpbm(const FileBytes& file);  // PPM, PGM, PBM, PAM
+Result<std::unique_ptr<PictureDecoder>> OpenPfm(const FileBytes& file);     // grey or colour
+Result<std::unique_ptr<PictureDecoder>> OpenBmp(const FileBytes& file);
+Result<std::unique_ptr<PictureDecoder>> OpenRadiance(const FileBytes& file);  // .hdr
+
+// These functions also return kInput if the program was built without the library of the format, or
+// if the library is not installed where the program runs. The message names it.
+Result<std::unique_ptr<PictureDecoder>> OpenWebp(const FileBytes& file);
+Result<std::unique_ptr<PictureDecoder>> OpenJpeg2000(const FileBytes& file);
+Result<std::unique_ptr<PictureDecoder>> OpenJpegXl(const FileBytes& file);
+Result<std::unique_ptr<PictureDecoder>> OpenHeif(const FileBytes& file);  // HEIC, AVIF
+
+// Returns the error of a format whose library is missing.
+//   format   as NameOf() names it
+//   library  such as "libwebp"
+Error MissingLibrary(const std::string& name, const char* format, const char* library);
+// Returns the error of a format whose library is not installed where the program runs.
+//   library  its file, such as "libheif.so.1"
+//   package  the package of Debian that it is in
+Error MissingAtRunTime(const std::string& name, const char* format, const char* library,
+                       const char* package);
 
 // kInput if a picture has no pixel, or more pixels or values than ReadImage() allows.
 Result<void> CheckPictureSize(int64_t width, int64_t height, int64_t channels,

@@ -135,11 +135,11 @@ Result<void> CheckIsWhole(const ByteSource& source, uint64_t size_bytes, const s
     case ImageFormat::kTiff:
       if (FirstTiffDirectory(source)) return {};
       return InputError(fmt::format("{}: TIFF file is incomplete: its directory is missing", name));
-    case ImageFormat::kRaw:
+    default:
       break;
   }
-  return InputError(
-      fmt::format("{}: is a camera raw file: expected a PNG, JPEG, TIFF or EXR file", name));
+  return InputError(fmt::format("{}: is a {} file: expected a PNG, JPEG, TIFF or EXR file", name,
+                                NameOf(format)));
 }
 
 Result<void> CheckFileIsWhole(const std::filesystem::path& path) {

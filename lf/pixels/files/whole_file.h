@@ -22,7 +22,7 @@ namespace lf {
 //   PNG   the chunks reach the end mark
 //   JPEG  the last two bytes are the end mark
 //   TIFF  the first directory begins in the file
-//   raw   an error, because this project writes none
+//   other an error, because this project writes none
 //   source  copies the bytes from `offset` on into `to`; returns how many it copied
 //   name    name of the file, for messages
 Result<void> CheckIsWhole(

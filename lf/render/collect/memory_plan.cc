@@ -7,6 +7,7 @@
 
 #include "lf/core/byte_text.h"
 #include "lf/film/plate/sensor_plate.h"
+#include "lf/light_field/model/image_files.h"
 #include "lf/render/collect/collected_frame.h"
 #include "lf/render/collect/defocus.h"
 #include "lf/selection/lens_weights/frame_weights.h"
@@ -111,7 +112,8 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
 
   const size_t sheet_pictures = std::min(frame_count, kMostSheetPictures);
   const size_t set_aside =
-      kProgramBytes + light_field.size() * (sizeof(LfCamera) + 128) +
+      kProgramBytes + SharedPictureBytes(light_field) +
+      light_field.size() * (sizeof(LfCamera) + 128) +
       element_count * (develop_bytes + sheet_pictures * kSheetBytesPerElement) +
       static_cast<size_t>(thread_count) * (need.decode_bytes + kTileBytes);
   // Memory for one LF image in each of the two batches, for its filtered copy in one of them, and

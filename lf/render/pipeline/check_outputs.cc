@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "lf/film/develop/video.h"
+#include "lf/light_field/model/image_files.h"
 #include "lf/render/pipeline/frame_output.h"
 #include "lf/render/state/run_state.h"
 #include "lf/storage/packed/packed_store_file.h"
@@ -86,7 +87,7 @@ Result<void> CheckOutputs(const Package& package, const RenderOptions& options) 
                       MakeFilmOutputs(OutputsOf(package, options), to.output_folder, to.video));
   LF_RETURN_IF_ERROR(outputs.CheckReplacesNone(to.inputs));
   const LightField& field = package.light_field;
-  LF_RETURN_IF_ERROR(outputs.CheckReplacesNone(field.folder, field.image_names, "an LF image"));
+  LF_RETURN_IF_ERROR(outputs.CheckReplacesNone(field.folder, ImageFileNames(field), "an LF image"));
   return outputs.CheckReplacesNone(field.folder, field.mask_names, "a mask of an LF image");
 }
 

@@ -8,6 +8,7 @@
 
 #include "lf/core/log.h"
 #include "lf/film/develop/video.h"
+#include "lf/light_field/model/image_files.h"
 #include "lf/render/package/package_file.h"
 #include "lf/render/pipeline/check_outputs.h"
 #include "lf/render/pipeline/frame_output.h"
@@ -79,7 +80,7 @@ Result<void> CheckImageFiles(const fs::path& path, const Package& package) {
   std::optional<Error> first;
   for (size_t i = 0; i < recorded.size(); i += step) {
     const LfImageId id{static_cast<uint32_t>(recorded[i])};
-    const fs::path file = package.light_field.ImagePath(id);
+    const fs::path file = ImageFileOf(package.light_field, id);
     std::error_code error;
     const uint64_t bytes = fs::file_size(file, error);
     if (!error && bytes == package.images[id.value].file_bytes) return {};

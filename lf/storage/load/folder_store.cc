@@ -7,7 +7,9 @@
 
 #include "lf/camera/resolution.h"
 #include "lf/core/file.h"
+#include "lf/light_field/model/image_files.h"
 #include "lf/light_field/model/image_fit.h"
+#include "lf/pixels/files/picture_view.h"
 #include "lf/pixels/files/reduced_jpeg.h"
 #include "lf/storage/load/image_reading.h"
 #include "lf/storage/load/load_mosaics.h"
@@ -19,12 +21,16 @@ namespace fs = std::filesystem;
 FolderStore::FolderStore(const LightField& light_field, Mosaics mosaics)
     : light_field_(light_field), tables_(light_field.encoding, ChannelGains()), mosaics_(mosaics) {}
 
-bool FolderStore::IsThere(LfImageId id) const {
-  std::error_code error;
-  return fs::exists(light_field_.ImagePath(id), error);
+FolderStore::~FolderStore() {
+  if (light_field_.size() > 0 && PictureViewOf(light_field_.ImagePath({0}))) ForgetSharedPicture();
 }
 
-void FolderStore::Announce(LfImageId id) const { AnnounceRead(light_field_.ImagePath(id)); }
+bool FolderStore::IsThere(LfImageId id) const {
+  std::error_code error;
+  return fs::exists(ImageFileOf(light_field_, id), error);
+}
+
+void FolderStore::Announce(LfImageId id) const { AnnounceRead(ImageFileOf(light_field_, id)); }
 
 Result<void> FolderStore::Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const {
   return LoadByRows(id, rect, pixels, nullptr);
@@ -132,7 +138,7 @@ Result<void> FolderStore::LoadRecorded(ImagePart* part, LfImageId id, const Pixe
 
 uint64_t FolderStore::StoredBytes(LfImageId id) const {
   std::error_code error;
-  const uint64_t size = fs::file_size(light_field_.ImagePath(id), error);
+  const uint64_t size = fs::file_size(ImageFileOf(light_field_, id), error);
   return error ? 0 : size;
 }
 

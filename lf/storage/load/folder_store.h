@@ -13,8 +13,8 @@
 
 namespace lf {
 
-// Reads PNG, JPEG, TIFF, EXR and camera raw files (pixels/files/image_file.h) and converts their
-// values to radiance as LightField::encoding says:
+// Reads image files of every format (pixels/files/image_file.h) and converts their values to
+// radiance as LightField::encoding says:
 //   - Integers of 8 or 16 bits are converted by a table (RadianceTables). Floats are radiance
 //     already, and are quantised.
 //   - With a Bayer pattern, a file has one channel. The store returns it as a mosaic, or as RGB
@@ -32,6 +32,10 @@ namespace lf {
 class FolderStore : public LfImageStore {
  public:
   explicit FolderStore(const LightField& light_field, Mosaics mosaics = Mosaics::kAsRecorded);
+  // Frees the picture that the views of the light field share (pixels/files/picture_view.h).
+  ~FolderStore() override;
+  FolderStore(const FolderStore&) = delete;
+  FolderStore& operator=(const FolderStore&) = delete;
 
   // Loads the pixels of `rect`, clipped to the image. kInput as LfImageStore says, and if the
   // levels (lf_black_level, lf_white_level) exceed the file's bits, a mask file has another size

@@ -12,6 +12,7 @@
 #include <variant>
 
 #include "lf/camera/vignetting.h"
+#include "lf/light_field/model/image_files.h"
 #include "lf/storage/load/demosaic.h"
 #include "lf/storage/load/image_reading.h"
 #include "lf/storage/load/opacities.h"
@@ -177,7 +178,7 @@ CodedImage CodeOf(const RecordedImage& image, const CodecSettings& settings) {
 }
 
 uint64_t SourceBytesOf(const LightField& light_field, LfImageId id) {
-  uint64_t bytes = SizeOf(light_field.ImagePath(id));
+  uint64_t bytes = SizeOf(ImageFileOf(light_field, id));
   if (bytes > 0 && !light_field.mask_names.empty() && !light_field.mask_names[id.value].empty())
     bytes += SizeOf(light_field.folder / light_field.mask_names[id.value]);
   return bytes;
