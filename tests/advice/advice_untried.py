@@ -54,7 +54,7 @@ UNTRIED = {
     "example_path: (--densify chooses one that they fill), or set aperture_diameter": CAPTURE + "a sparse, deep scene",
     "view_grid: LF cameras look up to {:.0f} degrees": CAPTURE + "cameras around a subject; focus_views_test.py",
     "camera_plane: densify each side by itself": CAPTURE + "cameras around a subject; lfdensify_test.py has it",
-    "open_light_field: or import with lfimport --bayer RGGB": CAPTURE + "camera raw files without a pattern",
+    "complete_light_field: or import with lfimport --bayer RGGB": CAPTURE + "camera raw files without a pattern",
     "read_stanford: correct --pitch, or the position": CAPTURE + "positions beyond 1e12 world units",
     "ngp_path: give their number (lfpath --frames)": CAPTURE + "a path of instant-ngp of many hours",
     "render_densified: once they are mended, render again with --overwrite": CAPTURE + "a sparse one",
