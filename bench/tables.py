@@ -64,8 +64,8 @@ TABLES = {
     "lens_weights-mosaics": ("quality", WEIGHTS + "mosaics", "--only nothing"),
     **{f"densify_quality-{group}": ("densify",
                                     "bench/quality/densify_quality.py {build}/bin {data} --only " + group, None)
-       for group in ("planar", "band", "scenes", "around", "turntables", "orbits", "left-out", "shop", "cards",
-                     "spoiled", "flicker")},
+       for group in ("planar", "band", "scenes", "around", "turntables", "orbits", "left-out", "trust", "shop",
+                     "cards", "spoiled", "flicker")},
     "first_lenses": ("densify", "bench/quality/first_lenses.py {build}/bin --data {data}", "--only survey"),
     "image_orders": ("performance", "bench/image_orders.py {build}", "--density 0.002"),
     "forecast_table": ("cluster", "bench/forecast_table.py {build}", "--count 400 --packages 1,2"),
