@@ -134,7 +134,7 @@ class Densifier {
 
   std::mutex mutex_;  // guards all members below
   DensifyReport report_;
-  std::vector<std::unique_ptr<SynthesisMemory>> spare_;  // that no thread uses
+  std::vector<std::unique_ptr<SynthesisMemory>> spare_;  // memory that no thread uses
   StoredKind kind_;  // kind that holds the values of all recorded LF images
 };
 

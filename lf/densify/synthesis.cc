@@ -24,7 +24,7 @@ constexpr int kColours = LfPixels::kRayLane, kLanes = LfPixels::kRgbLanes;
 struct Chunk {
   int x_begin = 0, y = 0, count = 0;
   std::array<int, kChunk> candidates = {};        // number of candidates of each pixel
-  std::array<int, kChunk> elected = {};           // the candidate with most votes, about
+  std::array<int, kChunk> elected = {};           // number of the elected candidate
   alignas(64) float depth[kMostSources][kChunk];  // [candidate][pixel]
   alignas(64) float votes[kMostSources][kChunk];
   alignas(64) float error[kMostSources][kMostSources][kChunk];  // [candidate][source][pixel]
