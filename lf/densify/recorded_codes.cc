@@ -38,8 +38,12 @@ Result<CodedImage> RecordedCodes::Of(LfImageId id) const {
   const PackedCode& code = codes_[id.value];
   const std::lock_guard lock(mutex_);
   LF_ASSIGN_OR_RETURN(const PackedCodeReader::Bytes bytes, reader_->Read(code));
-  return CodedImage{code.values, code.rect, std::string(bytes.code), std::string(bytes.mask),
-                    code.bytes};
+  CodedImage image = {code.values, code.rect, std::string(bytes.code), std::string(bytes.mask),
+                      code.bytes};
+  if (image.mask.empty()) {
+    LF_ASSIGN_OR_RETURN(image.front_ends, FrontEndsOf(image.code));
+  }
+  return image;
 }
 
 void RecordedCodes::Describe(PackedStorePlan* plan) const {

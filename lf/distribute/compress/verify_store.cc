@@ -79,6 +79,16 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
       return InputError(
           "the encoded image in the store differs from the image file; make the store again with "
           "{overwrite}");
+    for (size_t left_out = 1; left_out <= again.front_ends.size(); ++left_out) {
+      const auto front = reader->ReadFront(code, left_out);
+      LF_RETURN_IF_ERROR(front);
+      // Stores of earlier builds have none.
+      if (!*front) break;
+      if (!std::string_view(again.code).starts_with((*front)->code))
+        return InputError(
+            "the front of the encoded image in the store differs from the image file; make the "
+            "store again with {overwrite}");
+    }
     const std::lock_guard lock(mutex);
     readers.push_back(std::move(reader));
     ++verified;

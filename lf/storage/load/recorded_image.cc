@@ -174,7 +174,14 @@ CodedImage CodeOf(const RecordedImage& image, const CodecSettings& settings) {
   if (!image.opacities.empty())
     coded.mask = EncodeImage(image.opacities, PixelLayout::kGrey, of_mask);
   coded.source_bytes = image.source_bytes;
+  if (coded.mask.empty()) coded.front_ends = *FrontEndsOf(coded.code);
   return coded;
+}
+
+Result<std::vector<uint64_t>> FrontEndsOf(std::string_view code) {
+  LF_ASSIGN_OR_RETURN(std::vector<uint64_t> ends, ResolutionEnds(code));
+  ends.pop_back();
+  return ends;
 }
 
 uint64_t SourceBytesOf(const LightField& light_field, LfImageId id) {

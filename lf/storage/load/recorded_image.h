@@ -5,6 +5,8 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
+#include <vector>
 
 #include "lf/core/geometry.h"
 #include "lf/core/ids.h"
@@ -57,5 +59,9 @@ PixelRect RectToRecord(const LightField& light_field, LfImageId id, const PixelR
 
 // Encodes the pixels by `settings`, and the mask or the opacities losslessly.
 CodedImage CodeOf(const RecordedImage& image, const CodecSettings& settings);
+
+// Returns CodedImage::front_ends for an encoded image without a mask: those of all its resolutions
+// but the finest. Errors are those of ResolutionEnds().
+Result<std::vector<uint64_t>> FrontEndsOf(std::string_view code);
 
 }  // namespace lf
