@@ -8,8 +8,9 @@ usage: bench/reduced_loads.py BUILD_DIR [--data ../shared] [--images 40] [--name
 Each capture is packed by `lfcompressor`, and its LF images are loaded whole and at 1/2, 1/4 and 1/8 of their width by
 the Python package, in one thread. Bytes are those of the front of the encoded image that is read, as a share of the
 whole; the CPU time includes the conversion to linear light, and is a share of that of whole LF images. Both are sums
-over the images, and the time is the least of five. The error is the PSNR of display values, against means of squares of display values of the whole LF
-images; borders of four pixels are left out. `mosaic` is an RGGB mosaic of `still-life`, which is loaded as RGB.
+over the images, and the time is the least of five. The error is the PSNR of display values, against means of squares
+of display values of the whole LF images; borders of four pixels are left out. `mosaic` is an RGGB mosaic
+of `still-life`, which is loaded as RGB.
 """
 import argparse
 import json
@@ -85,8 +86,8 @@ def row_of(lf, store, arguments, is_mosaic):
         reduced, cpu_s = load(), least_cpu_s(load)
         left_out = int(math.log2(reduction)) - (1 if is_mosaic else 0)
         front_bytes = sum(fronts[int(i)][-1 - left_out] for i in indices)
-        error = np.mean([np.mean((display(small)[BORDER:-BORDER, BORDER:-BORDER] -
-                                  means_of(display(whole), reduction)[BORDER:-BORDER, BORDER:-BORDER]) ** 2)
+        inner = (slice(BORDER, -BORDER),) * 2
+        error = np.mean([np.mean((display(small) - means_of(display(whole), reduction))[inner] ** 2)
                          for small, whole in zip(reduced, wholes)])
         row[str(reduction)] = {"bytes": front_bytes / sum(fronts[int(i)][-1] for i in indices),
                                "cpu": cpu_s / whole_s, "psnr": 10 * math.log10(1 / error)}
@@ -101,8 +102,8 @@ def rows_of(arguments, folder):
         field = light_field_of(name, arguments, folder)
         for profile in PROFILES:
             store = folder / f"{name}-{profile}.lfs"
-            results.call([arguments.build.resolve() / "bin/lfcompressor", field, "-o", store, "--profile", profile, "-q",
-                          "--progress", "none"])
+            results.call([arguments.build.resolve() / "bin/lfcompressor", field, "-o", store, "--profile", profile,
+                          "--reencode", "--progress", "none", "-q"])
             rows.append({"capture": name, "profile": profile} | row_of(lf, store, arguments, name == "mosaic"))
     return rows
 
@@ -111,7 +112,8 @@ def table(record):
     lines = ["| capture | profile | " + " | ".join(f"bytes, 1/{r} | CPU, 1/{r} | dB, 1/{r}" for r in REDUCTIONS) + " |",
              "|" + " --- |" * (2 + 3 * len(REDUCTIONS))]
     for row in record["rows"]:
-        cells = [f"{row[str(r)]['bytes']:.0%} | {row[str(r)]['cpu']:.0%} | {row[str(r)]['psnr']:.1f}" for r in REDUCTIONS]
+        cells = [f"{row[str(r)]['bytes']:.0%} | {row[str(r)]['cpu']:.0%} | {row[str(r)]['psnr']:.1f}"
+                 for r in REDUCTIONS]
         lines.append(f"| {row['capture']} | {row['profile']} | {' | '.join(cells)} |")
     return lines
 

@@ -323,8 +323,8 @@ Image<Pixel> SlowPicture(int width, int height, PixelLayout layout) {
   return image;
 }
 
-// Where the picture changes slowly, a reduced picture is the mean of squares, whatever the size,
-// the layout, the reduction and the number of tiles. A last column or row may miss the samples
+// A reduced picture is the mean of squares if the picture changes slowly, whatever the size, the
+// layout, the reduction and the number of tiles. A last column or row may miss the samples
 // behind it.
 TEST(LfImageCodec, AReducedPictureHasTheMeansOfSquares) {
   for (const auto layout : {PixelLayout::kGrey, PixelLayout::kRgb, PixelLayout::kMosaic})

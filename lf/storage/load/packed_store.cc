@@ -17,6 +17,7 @@
 #include "lf/storage/load/opacities.h"
 #include "lf/storage/load/ordered_half.h"
 #include "lf/storage/load/recorded_image.h"
+#include "lf/storage/load/reduced_reading.h"
 
 namespace lf {
 namespace {
@@ -207,6 +208,15 @@ Result<int> PackedStore::LoadReducedBy(Loading* loading, LfImageId id, int divis
   const auto named = [&name](const Error& error) {
     return Error{error.kind, fmt::format("{}: {}", name, error.message)};
   };
+  if (code.values == StoredValues::kFile) {
+    const auto bytes = loading->reader.Read(code);
+    if (!bytes) return named(bytes.error());
+    if (!bytes->mask.empty()) return 1;
+    const auto read = [&](const WantedReduction& wanted, ImagePart* part) {
+      return ReadReducedJpegBytes(bytes->code, name, wanted, part);
+    };
+    return LoadReducedFile(read, name, light_field_, id, divisor, tables_, &loading->part, pixels);
+  }
   const int bits = code.values == StoredValues::kUint8 ? 8 : 16;
   LF_RETURN_IF_ERROR(CheckLevels(light_field_.encoding, bits, name));
   // The first level of a mosaic halves it already, so that fewer fronts are left out.
@@ -294,24 +304,33 @@ Result<void> PackedStore::LoadRecorded(Loading* loading, LfImageId id, const Pix
                     "make the store again with lfcompressor from all packages that are rendered",
                     name, TextOf(inside), TextOf(code.rect)));
   const int bits = code.values == StoredValues::kUint8 ? 8 : 16;
-  if (code.values != StoredValues::kHalf) LF_RETURN_IF_ERROR(CheckLevels(encoding, bits, name));
+  const bool is_file = code.values == StoredValues::kFile;
+  if (!is_file && code.values != StoredValues::kHalf)
+    LF_RETURN_IF_ERROR(CheckLevels(encoding, bits, name));
   const auto bytes = loading->reader.Read(code);
   if (!bytes) return named(bytes.error());
   const bool is_mosaic = encoding.bayer != BayerPattern::kNone;
   const PixelLayout layout = is_mosaic ? PixelLayout::kMosaic : PixelLayout::kRgb;
-  if (const auto ok = CheckCode(bytes->code, bits, layout, !is_mosaic, code.rect); !ok)
-    return named(ok.error());
+  if (!is_file)
+    if (const auto ok = CheckCode(bytes->code, bits, layout, !is_mosaic, code.rect); !ok)
+      return named(ok.error());
   pixels->Reset(inside, encoding.bayer);
   if (inside.empty()) return {};
 
   const PixelRect wanted = Moved(inside, -code.rect.x_begin, -code.rect.y_begin);
-  if (const auto ok = DecodeImage(bytes->code, wanted, &loading->decoded); !ok)
-    return named(ok.error());
-  MakePart(code.values, code.rect, curve_, &loading->decoded, &loading->floats, &loading->part);
-  const int channels =
-      std::visit([](const auto& image) { return image.channels(); }, loading->part.image);
-  ConvertRadiance(loading->part, channels, tables_, encoding, camera, k, pixels);
-  TakeBack(&loading->part, &loading->decoded, &loading->floats);
+  if (is_file) {
+    LF_ASSIGN_OR_RETURN(const ChannelUse use, ReadStoredPixelsOf(bytes->code, name, light_field_,
+                                                                 id, inside, &loading->part));
+    ConvertRadiance(loading->part, use.colours, tables_, encoding, camera, k, pixels);
+  } else {
+    if (const auto ok = DecodeImage(bytes->code, wanted, &loading->decoded); !ok)
+      return named(ok.error());
+    MakePart(code.values, code.rect, curve_, &loading->decoded, &loading->floats, &loading->part);
+    const int channels =
+        std::visit([](const auto& image) { return image.channels(); }, loading->part.image);
+    ConvertRadiance(loading->part, channels, tables_, encoding, camera, k, pixels);
+    TakeBack(&loading->part, &loading->decoded, &loading->floats);
+  }
 
   if (bytes->mask.empty()) {
     if (encoding.HasOpacity()) SetOpaque(pixels);

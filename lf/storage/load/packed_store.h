@@ -39,8 +39,9 @@ class PackedStore : public LfImageStore {
   Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override;
   // Reduces by the largest power of two that divides `divisor` and that the encoded image can be
   // reduced by, and reads and decodes only the front of the encoded image. A mosaic that is loaded
-  // as RGB is reduced as well. Loads a whole LF image if it has masks or opacities, depths, floats
-  // or the profile kThesis, and if a store of an earlier build has no fronts.
+  // as RGB is reduced as well. Image files are reduced as FolderStore reduces them. Loads a whole
+  // LF image if it has masks or opacities, depths, floats or the profile kThesis, and if a store of
+  // an earlier build has no fronts.
   Result<int> LoadReduced(LfImageId id, int divisor, const Intrinsics& k,
                           LfPixels* pixels) const override;
   bool LoadsDepths() const override { return densified_.has_value(); }

@@ -59,8 +59,8 @@ class PackedStoreTest : public FolderTest {
     for (int x = 0; x < kPackedWidth; ++x) mask.at(x, 7) = 0;
     ASSERT_TRUE(WriteImage(folder_ / "mask.png", mask.view()));
   }
-  // Packs the pixels `rect` of all images without loss.
-  void Pack(const PixelRect& rect = kPackedWhole, uint64_t shard_bytes = 0) {
+  // Packs the pixels `rect` of all images without loss, or their files.
+  void Pack(const PixelRect& rect = kPackedWhole, uint64_t shard_bytes = 0, bool files = false) {
     PackedStorePlan plan;
     plan.whole = IdentityOf(field_);
     plan.shard_bytes = shard_bytes;
@@ -71,7 +71,8 @@ class PackedStoreTest : public FolderTest {
       const Result<RecordedImage> image = ReadRecordedImage(field_, {i}, rect);
       ASSERT_TRUE(image) << image.error().message;
       EXPECT_EQ(image->is_rounded, is_rounded_);
-      ASSERT_TRUE(writer.Add({i}, CodeOf(*image, settings)));
+      ASSERT_TRUE(
+          writer.Add({i}, files ? **FileAsCode(field_, {i}, *image) : CodeOf(*image, settings)));
     }
     ASSERT_TRUE(writer.Finish());
     packed_ = ReadPackedStore(path_).value().light_field;
@@ -395,6 +396,77 @@ TEST_F(PackedStoreTest, ADamagedCodeIsAnErrorOfItsImageAlone) {
   EXPECT_NE(ErrorOf(*store, {3}).find("store.lfs/image3.png: "), std::string::npos);
   EXPECT_NE(ErrorOf(*store, {3}).find("checksum"), std::string::npos);
   ExpectSame(Loaded(*store, {4}, kPackedWhole), Loaded(FolderStore(field_), {4}, kPackedWhole));
+}
+
+// Image files in a store give the bits of the folder: JPEG, colours, grey, floats beyond half
+// floats, mosaics, alpha as a mask and as opacity, mask files, and in shards.
+TEST_F(PackedStoreTest, FilesGiveTheBitsOfTheFolder) {
+  const auto check = [&](Mosaics mosaics = Mosaics::kAsRecorded, uint64_t shard_bytes = 0) {
+    Pack(kPackedWhole, shard_bytes, true);
+    EXPECT_EQ(FindCodes(path_, packed_.image_names).value()[0].values, StoredValues::kFile);
+    ExpectTheBitsOfTheFolder(mosaics);
+    field_.image_names.clear();
+    field_.cameras.clear();
+    field_.mask_names.clear();
+    field_.encoding = {};
+  };
+  AddImages<uint8_t>(3, ".jpg");
+  check();
+  AddImages<uint16_t>(1);
+  check(Mosaics::kAsRecorded, 3000);
+  AddImages<uint8_t>(4);  // with alpha
+  MaskRow7OfImage2();
+  check();
+  AddImages<uint8_t>(4);
+  field_.encoding.alpha = AlphaMeaning::kStraight;
+  field_.encoding.background = std::array{0.2, 0.5, 1.};
+  check();
+  AddImages<uint16_t>(1);
+  field_.encoding.bayer = BayerPattern::kGrbg;
+  field_.encoding.transfer = Transfer::kLinear;
+  check(Mosaics::kToRgb);
+  // Half floats would round these.
+  is_rounded_ = true;
+  Image<float> bright(kPackedWidth, kPackedHeight, 3);
+  for (size_t i = 0; i < bright.pixels().size(); ++i)
+    bright.pixels()[i] = 1.00001F + static_cast<float>(i) * 0.01F;
+  ASSERT_TRUE(
+      WriteImage(folder_ / "bright.exr", bright.view(), {"R", "G", "B"}, PixelType::kFloat));
+  AddImage("bright.exr");
+  field_.encoding.max_radiance = 50;
+  check();
+}
+
+// A JPEG file in a store is loaded at a reduced size as one in a folder is.
+TEST_F(PackedStoreTest, FilesAreReducedAsThoseOfTheFolder) {
+  AddImages<uint8_t>(3, ".jpg");
+  Pack(kPackedWhole, 0, true);
+  const FolderStore files(field_);
+  for (uint32_t i = 0; i < kCount; ++i)
+    for (const int divisor : {2, 3, 4, 8}) {
+      LfPixels of_store, of_folder;
+      const Intrinsics& k = field_.intrinsics[0];
+      const Result<int> reduction = Opened()->LoadReduced({i}, divisor, k, &of_store);
+      ASSERT_TRUE(reduction);
+      EXPECT_EQ(*reduction, divisor == 3 ? 1 : divisor);
+      EXPECT_EQ(*reduction, *files.LoadReduced({i}, divisor, k, &of_folder));
+      ExpectSame(of_store, of_folder);
+    }
+}
+
+// A file in a store may be damaged like one in a folder; its checksum may be right.
+TEST_F(PackedStoreTest, ADamagedFileIsAnErrorOfItsImage) {
+  AddImages<uint8_t>(3);
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "image3.png", "no picture"));
+  PackedStoreWriter writer = PackedStoreWriter::Create(path_, field_, {}).value();
+  CodedImage coded;
+  coded.values = StoredValues::kFile;
+  coded.rect = kPackedWhole;
+  coded.code = "no picture";
+  ASSERT_TRUE(writer.Add({3}, coded));
+  ASSERT_TRUE(writer.Finish());
+  packed_ = ReadPackedStore(path_).value().light_field;
+  EXPECT_TRUE(ErrorOf(*Opened(), {3}).starts_with(packed_.ImagePath({3}).string() + ": "));
 }
 
 // Returns a picture that changes slowly, so that means of squares are known well.

@@ -80,7 +80,7 @@ Result<OpenedStore> OpenComplete(const std::filesystem::path& path);
 
 // Name of each StoredValues in the column `kind` of the table `codes`, in the order of the
 // enumeration.
-inline constexpr const char* kKindNames[] = {"uint8", "uint16", "half", "display16"};
+inline constexpr const char* kKindNames[] = {"uint8", "uint16", "half", "display16", "file"};
 
 inline constexpr const char* kComplete = "complete";
 inline constexpr const char* kUnfinished = "unfinished";

@@ -31,6 +31,7 @@ enum class StoredValues : uint8_t {
                    // (storage/load/ordered_half.h)
   kDisplay16 = 3,  // 16-bit values of the image file, mapped to a tone curve
                    // (ReadDisplayLevels(), storage/load/display_curve.h)
+  kFile = 4,       // no numbers: the encoded image is the image file itself, byte by byte
 };
 
 inline constexpr const char* kStoreExtension = ".lfs";
