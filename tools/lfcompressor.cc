@@ -110,7 +110,8 @@ void AddQuality(CLI::App& app, Arguments& a) {
       "default: lossy, wavelets with a dead-zone quantiser for each subband\n"
       "thesis: lossy, Haar wavelets with one threshold and one range of values for all subbands\n"
       "lossless: the decoded pixels equal those of the image files bit by bit\n"
-      "recorded: image files are kept as they are. The profiles default and lossless keep those "
+      "recorded: image files are kept as they are, with their EXIF data. The profiles default and "
+      "lossless keep those "
       "that are smaller than their encoded images, such as most JPEG files.");
   quality.AddFlag("--reencode", a.codec.reencode,
                   "Encode all LF images, also those whose files are smaller\n"

@@ -242,13 +242,23 @@ Result<int> PackedStore::LoadReducedBy(Loading* loading, LfImageId id, int divis
     ColoursOfMosaic(encoding.bayer, &loading->decoded.pixels);
     encoding.bayer = BayerPattern::kNone;
   }
-  MakePart(code.values, {}, curve_, &loading->decoded, &loading->floats, &loading->part);
-  pixels->Reset(loading->part.rect, BayerPattern::kNone);
+  pixels->Reset(loading->decoded.rect, BayerPattern::kNone);
+  Convert(loading, code.values, {}, encoding, camera, reduced, pixels);
+  return reduction;
+}
+
+// Converts the decoded values to the radiance of pixels->rect.
+//   coded     pixels of the LF image that are encoded
+//   encoding  of the values: without a Bayer pattern if they are RGB made of a mosaic
+//   k         intrinsics of the pixels, for the falloff
+void PackedStore::Convert(Loading* loading, StoredValues values, const PixelRect& coded,
+                          const RadianceEncoding& encoding, const LfCamera& camera,
+                          const Intrinsics& k, LfPixels* pixels) const {
+  MakePart(values, coded, curve_, &loading->decoded, &loading->floats, &loading->part);
   const int channels =
       std::visit([](const auto& image) { return image.channels(); }, loading->part.image);
-  ConvertRadiance(loading->part, channels, tables_, encoding, camera, reduced, pixels);
+  ConvertRadiance(loading->part, channels, tables_, encoding, camera, k, pixels);
   TakeBack(&loading->part, &loading->decoded, &loading->floats);
-  return reduction;
 }
 
 Result<PackedPlaneReader*> PackedStore::PlanesOf(Loading* loading) const {
@@ -325,11 +335,7 @@ Result<void> PackedStore::LoadRecorded(Loading* loading, LfImageId id, const Pix
   } else {
     if (const auto ok = DecodeImage(bytes->code, wanted, &loading->decoded); !ok)
       return named(ok.error());
-    MakePart(code.values, code.rect, curve_, &loading->decoded, &loading->floats, &loading->part);
-    const int channels =
-        std::visit([](const auto& image) { return image.channels(); }, loading->part.image);
-    ConvertRadiance(loading->part, channels, tables_, encoding, camera, k, pixels);
-    TakeBack(&loading->part, &loading->decoded, &loading->floats);
+    Convert(loading, code.values, code.rect, encoding, camera, k, pixels);
   }
 
   if (bytes->mask.empty()) {

@@ -70,6 +70,9 @@ class PackedStore : public LfImageStore {
   PackedStore(const LightField& light_field, Mosaics mosaics, std::vector<PackedCode> codes);
   Result<void> LoadRecorded(Loading* loading, LfImageId id, const PixelRect& rect,
                             LfPixels* pixels) const;
+  void Convert(Loading* loading, StoredValues values, const PixelRect& coded,
+               const RadianceEncoding& encoding, const LfCamera& camera, const Intrinsics& k,
+               LfPixels* pixels) const;
   Result<int> LoadReducedBy(Loading* loading, LfImageId id, int divisor, LfPixels* pixels) const;
   Result<void> LoadDepths(Loading* loading, LfImageId id, LfDepths* depths) const;
   Result<void> LoadTrust(Loading* loading, LfImageId id, LfPixels* pixels) const;
