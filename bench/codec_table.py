@@ -106,8 +106,8 @@ class Content:
     def code(self, *options, and_by_defaults=False):
         """Returns one row (the report of lfcompressor and the quality of the frames), and the frames."""
         store = self.folder / "field.lfs"
-        report = json.loads(run(self.build / "bin/lfcompressor", self.field, "-o", store, "--overwrite", "--json",
-                                "--progress", "none", *options))
+        report = json.loads(run(self.build / "bin/lfcompressor", self.field, "-o", store, "--reencode", "--overwrite",
+                                "--json", "--progress", "none", *options))
         frames = self.render(store)
         default_psnr = self.frame_psnr(self.render(store, "default"), "default") if and_by_defaults else None
         return {"default_psnr": default_psnr, "ratio": report["ratio"],

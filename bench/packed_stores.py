@@ -48,8 +48,8 @@ def stores_of(programs, folder, memory, field, bits):
     kinds = {"in memory": rewritten(field, memory / "tiff", bits == 8, "tiff", [cv2.IMWRITE_TIFF_COMPRESSION, 1])}
     for profile in ("lossless", "default"):
         store = folder / f"{profile}.lfs"
-        results.call([programs / "lfcompressor", png, "-o", store, "--profile", profile, "--overwrite", "-q",
-                      "--progress", "none"])
+        results.call([programs / "lfcompressor", png, "-o", store, "--profile", profile, "--reencode", "--overwrite",
+                      "-q", "--progress", "none"])
         kinds[f"store, {profile}"] = store
     kinds["PNG files"] = png
     return kinds

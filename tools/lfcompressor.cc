@@ -105,11 +105,17 @@ void AddOutput(CLI::App& app, Arguments& a) {
 void AddQuality(CLI::App& app, Arguments& a) {
   lf::OptionGroup quality(app, lf::kQualityGroup);
   quality.AddChoice(
-      "--profile", a.codec.profile, {"default", "thesis", "lossless"},
+      "--profile", a.codec.profile, {"default", "thesis", "lossless", "recorded"},
       "How LF images are encoded\n"
       "default: lossy, wavelets with a dead-zone quantiser for each subband\n"
       "thesis: lossy, Haar wavelets with one threshold and one range of values for all subbands\n"
-      "lossless: the decoded pixels equal those of the image files bit by bit");
+      "lossless: the decoded pixels equal those of the image files bit by bit\n"
+      "recorded: image files are kept as they are, with their EXIF data. The profiles default and "
+      "lossless keep those "
+      "that are smaller than their encoded images, such as most JPEG files.");
+  quality.AddFlag("--reencode", a.codec.reencode,
+                  "Encode all LF images, also those whose files are smaller\n"
+                  "Encoded images take less time to load than JPEG files.");
   quality
       .Add("--levels N", a.codec.levels,
            "Levels of the wavelet transform (4, thesis: 1)\n"

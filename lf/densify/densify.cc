@@ -400,7 +400,7 @@ Result<void> Densifier::AddRecorded(LfImageId id) {
     return {};
   }
   LF_ASSIGN_OR_RETURN(const CodedImage image, recorded_->Of(id));
-  LF_ASSIGN_OR_RETURN(const StoredKind kind, KindOfCode(image));
+  LF_ASSIGN_OR_RETURN(const StoredKind kind, KindOfCode(image, light_field_.encoding));
   Hold(kind);
   return writer_->Add(id, image);
 }

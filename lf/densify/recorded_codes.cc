@@ -2,12 +2,24 @@
 #include "lf/densify/recorded_codes.h"
 
 #include <algorithm>
+#include <utility>
 
+#include "lf/light_field/model/channel_use.h"
+#include "lf/pixels/files/image_file.h"
 #include "lf/storage/load/recorded_image.h"
 
 namespace lf {
 
-Result<StoredKind> KindOfCode(const CodedImage& image) {
+Result<StoredKind> KindOfCode(const CodedImage& image, const RadianceEncoding& encoding) {
+  if (image.values == StoredValues::kFile) {
+    LF_ASSIGN_OR_RETURN(const ImageFileInfo file, ReadImageInfoBytes(image.code, "image file"));
+    return StoredKind{file.is_float    ? StoredValues::kHalf
+                      : file.bits == 8 ? StoredValues::kUint8
+                                       : StoredValues::kUint16,
+                      encoding.bayer != BayerPattern::kNone ? PixelLayout::kMosaic
+                      : UseOf(file).colours == 3            ? PixelLayout::kRgb
+                                                            : PixelLayout::kGrey};
+  }
   LF_ASSIGN_OR_RETURN(const CodeInfo info, ReadCodeInfo(image.code));
   const bool is_on_curve = image.values == StoredValues::kDisplay16;
   return StoredKind{is_on_curve ? StoredValues::kUint16 : image.values, info.layout};
@@ -33,13 +45,18 @@ Result<CodedImage> RecordedCodes::Of(LfImageId id) const {
                         ReadRecordedImage(light_field_, id, {0, 0, k.width_px, k.height_px}));
     CodecSettings settings;
     settings.profile = CodecProfile::kLossless;
-    return CodeOf(image, settings);
+    LF_ASSIGN_OR_RETURN(std::optional<CodedImage> file, FileAsCode(light_field_, id, image));
+    return SmallerOf(CodeOf(image, settings), std::move(file));
   }
   const PackedCode& code = codes_[id.value];
   const std::lock_guard lock(mutex_);
   LF_ASSIGN_OR_RETURN(const PackedCodeReader::Bytes bytes, reader_->Read(code));
-  return CodedImage{code.values, code.rect, std::string(bytes.code), std::string(bytes.mask),
-                    code.bytes};
+  CodedImage image = {code.values, code.rect, std::string(bytes.code), std::string(bytes.mask),
+                      code.bytes};
+  if (image.mask.empty() && image.values != StoredValues::kFile) {
+    LF_ASSIGN_OR_RETURN(image.front_ends, FrontEndsOf(image.code));
+  }
+  return image;
 }
 
 void RecordedCodes::Describe(PackedStorePlan* plan) const {
@@ -54,7 +71,7 @@ Result<StoredKind> RecordedCodes::KindOf(LfImageId id) const {
     return StoredKind{image.values, image.layout};
   }
   LF_ASSIGN_OR_RETURN(const CodedImage image, Of(id));
-  return KindOfCode(image);
+  return KindOfCode(image, light_field_.encoding);
 }
 
 }  // namespace lf

@@ -13,24 +13,25 @@
 #include "lf/core/result.h"
 #include "lf/densify/recorded_values.h"
 #include "lf/light_field/model/light_field.h"
+#include "lf/light_field/model/radiance.h"
 #include "lf/pixels/codec/lf_image_codec.h"
 #include "lf/storage/packed/packed_store_file.h"
 #include "lf/storage/packed/packed_store_writer.h"
 
 namespace lf {
 
-// Returns the kind of the stored values that an encoded image stands for; never kDisplay16. kInput:
-// the encoded image is damaged.
-Result<StoredKind> KindOfCode(const CodedImage& image);
+// Returns the kind of the stored values that an encoded image stands for; never kDisplay16 or
+// kFile. kInput: the encoded image is damaged.
+Result<StoredKind> KindOfCode(const CodedImage& image, const RadianceEncoding& encoding);
 
 class RecordedCodes {
  public:
   // The light field must outlive the result. kInput: its packed store is damaged.
   static Result<std::unique_ptr<RecordedCodes>> Open(const LightField& light_field);
 
-  // Returns an LF image that can be read. An image file is encoded without loss; the encoded image
-  // of a packed store is copied, which loses nothing more. May be called by many threads at the
-  // same time. kInput: the LF image cannot be read.
+  // Returns an LF image that can be read. An image file is encoded without loss, or kept if that is
+  // smaller; the encoded image of a packed store is copied, which loses nothing more. May be called
+  // by many threads at the same time. kInput: the LF image cannot be read.
   Result<CodedImage> Of(LfImageId id) const;
 
   // Sets PackedStorePlan::codec and display_levels.

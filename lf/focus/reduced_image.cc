@@ -49,10 +49,14 @@ ReducedImage Reduced(const LfPixels& pixels, int divisor) {
 Result<ReducedImage> LoadReducedImage(const LightField& light_field, const LfImageStore& store,
                                       LfImageId id) {
   const Intrinsics& k = light_field.Camera(id).intrinsics;
-  LF_ASSIGN_OR_RETURN(const LfPixels pixels,
-                      LoadWithoutThrowing(store, id, {0, 0, k.width_px, k.height_px},
-                                          light_field.ImagePath(id).string(), LfPixels()));
-  return Reduced(pixels, DivisorFor(k.width_px));
+  const int divisor = DivisorFor(k.width_px);
+  LfPixels pixels;
+  LF_ASSIGN_OR_RETURN(const int reduction,
+                      LoadReducedWithoutThrowing(store, id, divisor, k,
+                                                 light_field.ImagePath(id).string(), &pixels));
+  ReducedImage reduced = Reduced(pixels, divisor / reduction);
+  reduced.divisor = divisor;
+  return reduced;
 }
 
 }  // namespace lf

@@ -61,6 +61,12 @@ void Shrink(const LfPixels& pixels, int divisor, LfPixels* shrunken) {
   const PixelRect whole = {0, 0, std::max(1, pixels.rect.width() / divisor),
                            std::max(1, pixels.rect.height() / divisor)};
   shrunken->Reset(whole, BayerPattern::kNone);
+  if (divisor == 1) {
+    shrunken->radiance = pixels.radiance;
+    shrunken->opacity = pixels.opacity;
+    shrunken->any_masked = pixels.any_masked;
+    return;
+  }
   shrunken->any_masked = ShrinkPlane(pixels.radiance, divisor, &shrunken->radiance);
   if (pixels.opacity.empty()) return;
   shrunken->opacity.Resize(whole.width(), whole.height(), kLanes);

@@ -160,8 +160,8 @@ def write_packages(field: LightField, path: Union[Path, Camera], folder: FilePat
 
 def compress(field: LightField, store: FilePath, *, profile: str = "default", threshold: Optional[float] = None,
              target_psnr: Optional[float] = None, levels: Optional[int] = None, quantizer: str = "8bit",
-             shard_size: str = "", resume: bool = False, overwrite: bool = False, verify: bool = False,
-             strict: bool = False, threads: int = 0, progress: Progress = None) -> _Facts:
+             reencode: bool = False, shard_size: str = "", resume: bool = False, overwrite: bool = False,
+             verify: bool = False, strict: bool = False, threads: int = 0, progress: Progress = None) -> _Facts:
     """Compress the LF images into a packed store, as `lfcompressor` does.
 
     Parameters
@@ -170,8 +170,9 @@ def compress(field: LightField, store: FilePath, *, profile: str = "default", th
         The light field.
     store : path
         The file to write; its name ends in `.lfs`. :func:`open` opens it.
-    profile : {"default", "lossless", "thesis"}
-        How LF images are encoded.
+    profile : {"default", "lossless", "thesis", "recorded"}
+        How LF images are encoded. "recorded" keeps image files as they are; "default" and "lossless" keep those that
+        are smaller than their encoded images.
     threshold : float, optional
         Wavelet coefficients below it, in 1/255 of the range of values, are dropped; by default that of the profile.
     target_psnr : float, optional
@@ -180,6 +181,8 @@ def compress(field: LightField, store: FilePath, *, profile: str = "default", th
         Levels of the wavelet transform, 1 to 5; by default those of the profile.
     quantizer : str
         For the profile "thesis": "8bit", or the number of values of a coefficient.
+    reencode : bool
+        True: encode all LF images, also those whose files are smaller.
     shard_size : str
         Such as "4G": split the store into files of about this size.
     resume, overwrite : bool
@@ -216,8 +219,9 @@ def compress(field: LightField, store: FilePath, *, profile: str = "default", th
     if words.resume and words.overwrite:
         raise UsageError("resume and overwrite cannot both be True")
     codec = _core.CodecWords()
-    codec.profile = arguments.choice("profile", profile, ("default", "lossless", "thesis"))
+    codec.profile = arguments.choice("profile", profile, ("default", "lossless", "thesis", "recorded"))
     codec.quantizer = arguments.text("quantizer", quantizer)
+    codec.reencode = arguments.flag("reencode", reencode)
     if threshold is not None and target_psnr is not None:
         raise UsageError("threshold and target_psnr cannot both be given")
     if threshold is not None:

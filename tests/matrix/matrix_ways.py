@@ -36,7 +36,7 @@ RUNS = {  # options with which a run changes the content of the frames
     "round-robin": ["--order", "round-robin", "--max-images", MOST_IMAGES],
     "area": ["--order", "area", "--max-images", MOST_IMAGES],
 }
-INPUTS = ("folder", "store", "lossy store", "store of packages", "lossy store of packages",
+INPUTS = ("folder", "store", "lossy store", "recorded store", "store of packages", "lossy store of packages",
           "needed pixels", "lossy needed pixels", "densified store")
 CUTS = ("whole", "packages", "moved packages", "shards", "shards of packages", "lfsubmit")
 FIELDS = ("rgb", "mosaic", "alpha", "opacity", "falloff", "shutter", "depths", "heights", "flawed", "flawed mosaic")

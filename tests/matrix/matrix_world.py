@@ -299,7 +299,7 @@ class World:
             words += ["--needed-pixels"] if "needed" in source else []
         else:
             words = [self.folder_of(field)]
-        profile = "default" if "lossy" in source else "lossless"
+        profile = "default" if "lossy" in source else "recorded" if "recorded" in source else "lossless"
         self.make("lfcompressor", *words, "-o", store, "--profile", profile)
         return store
 

@@ -11,21 +11,31 @@ namespace {
 Result<CodecProfile> ProfileOf(const std::string& word) {
   if (word == "default") return CodecProfile::kDefault;
   if (word == "thesis") return CodecProfile::kThesis;
-  if (word == "lossless") return CodecProfile::kLossless;
-  return UsageError(fmt::format("{{profile {}}}: expected one of default, thesis, lossless", word));
+  if (word == "lossless" || word == "recorded") return CodecProfile::kLossless;
+  return UsageError(
+      fmt::format("{{profile {}}}: expected one of default, thesis, lossless, recorded", word));
 }
 
 }  // namespace
 
 Result<void> SetCodec(const CodecWords& words, CompressOptions* options) {
   LF_ASSIGN_OR_RETURN(options->codec.profile, ProfileOf(words.profile));
-  const bool is_thesis = words.profile == "thesis", is_lossless = words.profile == "lossless";
+  const bool is_thesis = words.profile == "thesis", is_recorded = words.profile == "recorded";
+  const bool is_lossless = is_recorded || words.profile == "lossless";
   options->codec.levels = words.levels > 0 ? words.levels : is_thesis ? 1 : 4;
   options->codec.threshold = words.threshold >= 0 ? words.threshold : is_thesis ? 8 : 3;
   if (is_lossless && (words.threshold >= 0 || words.target_psnr > 0))
+    return UsageError(fmt::format(
+        "{{threshold}} and {{target_psnr}} cannot be used with {{profile {}}}, which drops no "
+        "details: leave them out",
+        words.profile));
+  if (is_recorded && words.reencode)
     return UsageError(
-        "{threshold} and {target_psnr} cannot be used with {profile lossless}, which drops no "
-        "details: leave them out");
+        "{reencode} cannot be used with {profile recorded}, which keeps image files: leave one of "
+        "them out");
+  options->files = is_recorded                   ? KeepFiles::kAll
+                   : is_thesis || words.reencode ? KeepFiles::kNone
+                                                 : KeepFiles::kSmaller;
   if (words.quantizer != "8bit") {
     if (!is_thesis)
       return UsageError(

@@ -11,15 +11,16 @@ namespace lf {
 
 // Each member has the meaning and the default of the option of lfcompressor with this name.
 struct CodecWords {
-  std::string profile = "default";  // default, thesis or lossless
+  std::string profile = "default";  // default, thesis, lossless or recorded
   std::string quantizer = "8bit";
   int levels = 0;          // 0: the default of the profile
   double threshold = -1;   // below 0: the default of the profile
   double target_psnr = 0;  // in dB; 0: the threshold is not searched for
+  bool reencode = false;   // true: no image file is kept
 };
 
-// Sets options->codec and options->target_psnr_db. kUsage: words that do not exist, or that
-// contradict each other.
+// Sets options->codec, options->files and options->target_psnr_db. kUsage: words that do not exist,
+// or that contradict each other.
 Result<void> SetCodec(const CodecWords& words, CompressOptions* options);
 
 }  // namespace lf

@@ -30,7 +30,7 @@ PackedStorePlan PlanOf(const CompressSource& source, const CompressOptions& opti
   PackedStorePlan plan;
   plan.whole = source.whole;
   plan.rects = source.rects;
-  plan.codec = NameOf(settings);
+  plan.codec = NameOf(settings, options.files);
   plan.display_levels = ImageCoder(source.light_field.encoding, settings).display_levels();
   plan.shard_bytes = options.shard_bytes;
   plan.source = options.source_name;
@@ -123,9 +123,13 @@ void Compressor::AddOne(PackedStoreWriter* writer, LfImageId id) {
   if (!image) {
     error = image.error();
   } else {
-    coded = coder_->Code(*image);
-    lost = coder_->ErrorOf(*image, *coded);
-    if (const Result<void> added = writer->Add(id, *coded); !added) error = added.error();
+    if (Result<CodedImage> made = coder_->CodeOrFile(light_field, id, *image); made) {
+      coded = *std::move(made);
+      lost = coder_->ErrorOf(*image, *coded);
+      if (const Result<void> added = writer->Add(id, *coded); !added) error = added.error();
+    } else {
+      error = made.error();
+    }
   }
 
   const std::lock_guard lock(mutex_);
@@ -134,7 +138,7 @@ void Compressor::AddOne(PackedStoreWriter* writer, LfImageId id) {
   if (error) {
     // Only an LF image that is broken itself (kInput) is skipped. If the machine lacks memory or
     // disk space, Compress() fails.
-    const bool is_image = !image && error->kind == ErrorKind::kInput;
+    const bool is_image = !coded && error->kind == ErrorKind::kInput;
     if (is_image) report_.skipped.push_back({name, error->message});
     if ((!is_image || options_.strict) && !ended_) {
       ended_ = true;
@@ -151,7 +155,9 @@ void Compressor::Count(const RecordedImage& image, const CodedImage& coded, cons
   const uint64_t pixel_bytes =
       std::visit([](const auto& pixels) { return pixels.size_bytes(); }, image.pixels);
   ++report_.coded_count;
-  report_.rounded_count += image.is_rounded ? 1 : 0;
+  const bool is_file = coded.values == StoredValues::kFile;
+  report_.file_count += is_file ? 1 : 0;
+  report_.rounded_count += image.is_rounded && !is_file ? 1 : 0;
   report_.source_bytes += coded.source_bytes;
   report_.pixel_bytes += pixel_bytes;
   report_.code_bytes += coded.code.size() + coded.mask.size();
@@ -186,7 +192,7 @@ Result<void> Compressor::CheckFiles(const PackedStoreWriter& writer) {
 }
 
 Result<void> Compressor::Write(FileLock lock) {
-  coder_.emplace(source_.light_field.encoding, settings_);
+  coder_.emplace(source_.light_field.encoding, settings_, options_.files);
   LF_ASSIGN_OR_RETURN(
       PackedStoreWriter writer,
       OpenWriter(source_, options_, PlanOf(source_, options_, settings_), std::move(lock)));
@@ -198,8 +204,8 @@ Result<void> Compressor::Write(FileLock lock) {
   now_.total = ids_.size();
   now_.done = report_.resumed_count;
   LogDebug("{}: {} LF images to be encoded, {} are encoded; codec {}; {} threads",
-           options_.store.string(), ids.size(), report_.resumed_count, NameOf(settings_),
-           pool_.thread_count());
+           options_.store.string(), ids.size(), report_.resumed_count,
+           NameOf(settings_, options_.files), pool_.thread_count());
   pool_.ForEach(ids.size(), [&](size_t i) { AddOne(&writer, ids[i]); });
   std::sort(report_.skipped.begin(), report_.skipped.end(),
             [](const auto& a, const auto& b) { return a.name < b.name; });
@@ -222,8 +228,9 @@ Result<void> Compressor::Write(FileLock lock) {
 }
 
 VerifyOptions Compressor::Verification() const {
-  return {options_.store, settings_, PlanOf(source_, options_, settings_), !options_.resume,
-          [this] { return IsInterrupted(); }};
+  return {options_.store,   settings_,
+          options_.files,   PlanOf(source_, options_, settings_),
+          !options_.resume, [this] { return IsInterrupted(); }};
 }
 
 Result<void> Compressor::Verify() {
@@ -312,17 +319,21 @@ Result<CompressReport> Compressor::Run() {
 
 }  // namespace
 
-std::string NameOf(const CodecSettings& settings) {
+std::string NameOf(const CodecSettings& settings, KeepFiles files) {
+  const char* const kept = files == KeepFiles::kSmaller ? ", or the image file if it is smaller"
+                           : files == KeepFiles::kAll   ? ", or the image file"
+                                                        : "";
   switch (settings.profile) {
     case CodecProfile::kThesis:
       return fmt::format("thesis, levels {}, threshold {}, quantizer {}", settings.levels,
                          settings.threshold, settings.quantizer);
     case CodecProfile::kDefault:
-      return fmt::format("default, levels {}, threshold {}", settings.levels, settings.threshold);
+      return fmt::format("default, levels {}, threshold {}{}", settings.levels, settings.threshold,
+                         kept);
     case CodecProfile::kLossless:
       break;
   }
-  return fmt::format("lossless, levels {}", settings.levels);
+  return fmt::format("{}, levels {}{}", kLosslessCodec, settings.levels, kept);
 }
 
 Result<CompressReport> Compress(const CompressSource& source, const CompressOptions& options,

@@ -15,6 +15,7 @@
 #include "lf/core/result.h"
 #include "lf/distribute/compress/code_quality.h"
 #include "lf/distribute/compress/compress_source.h"
+#include "lf/distribute/compress/keep_files.h"
 #include "lf/pixels/codec/lf_image_codec.h"
 
 namespace lf {
@@ -23,6 +24,7 @@ struct CompressOptions {
   std::filesystem::path store;  // path of the packed store, such as STORE.lfs
   // The threshold is in grey steps (GreyStep() of code_quality.h) of the images' values.
   CodecSettings codec;
+  KeepFiles files = KeepFiles::kSmaller;  // must be kNone for CodecProfile::kThesis
   // If set, replaces codec's threshold by the largest one at which a sample of the LF images has at
   // least this PSNR.
   std::optional<double> target_psnr_db;
@@ -67,6 +69,7 @@ struct CompressReport {
 
   // Count, sums and lowest quality of the LF images that this call encoded.
   size_t coded_count = 0;
+  size_t file_count = 0;      // of these, LF images that are kept as their files
   uint64_t source_bytes = 0;  // size of the files of the LF images
   uint64_t pixel_bytes = 0;   // size of the pixels, in the number type of the files
   uint64_t code_bytes = 0;
@@ -82,8 +85,8 @@ struct CompressReport {
 };
 
 // Returns the settings in words, as a store records them. A store is resumed or verified only with
-// equal words.
-std::string NameOf(const CodecSettings& settings);
+// equal words. Words of settings that lose nothing begin with kLosslessCodec.
+std::string NameOf(const CodecSettings& settings, KeepFiles files);
 
 // Compresses the LF images of `source` into options.store. kUsage: wrong settings, the store exists
 // and no option says what to do with it, its name belongs to another file, or no threshold reaches

@@ -42,7 +42,7 @@ std::string CompressText(const CompressReport& report, const CompressOptions& op
       "{}: {} LF images{}, {}B in all; {}\n", options.store.string(),
       report.image_count - report.skipped.size(),
       report.skipped.empty() ? std::string() : fmt::format(" of {}", report.image_count),
-      ShortNumber(static_cast<double>(report.store_bytes)), NameOf(settings));
+      ShortNumber(static_cast<double>(report.store_bytes)), NameOf(settings, options.files));
   if (report.left_out_count > 0)
     text += fmt::format(
         "{} LF images are left out, because the packages do not need them: a film that needs them "
@@ -61,6 +61,11 @@ std::string CompressText(const CompressReport& report, const CompressOptions& op
     text += fmt::format("files     {}B: {:.2f} : 1\n",
                         ShortNumber(static_cast<double>(report.source_bytes)),
                         Ratio(report.source_bytes, report.code_bytes));
+    if (report.file_count > 0)
+      text += fmt::format("kept      {} of {} LF images as their files, which are {}\n",
+                          report.file_count, report.coded_count,
+                          options.files == KeepFiles::kAll ? "not encoded again"
+                                                           : "smaller than their encoded images");
     text += fmt::format("quality   {}", Decibels(report.error.PsnrDb()));
     if (report.error.squared > 0)
       text += fmt::format("; worst {} ({})", Decibels(report.worst_psnr_db), report.worst_name);
@@ -99,13 +104,14 @@ std::string CompressJson(const CompressReport& report, const CompressOptions& op
   settings.threshold = report.threshold;
   Json json;
   json["store"] = options.store.string();
-  json["codec"] = NameOf(settings);
+  json["codec"] = NameOf(settings, options.files);
   json["threshold"] = report.threshold;
   json["lf_images"] = report.image_count;
   json["lf_images_left_out"] = report.left_out_count;
   json["was_there"] = report.was_there;
   json["resumed"] = report.resumed_count;
   json["coded"] = report.coded_count;
+  json["files_kept"] = report.file_count;
   json["source_bytes"] = report.source_bytes;
   json["pixel_bytes"] = report.pixel_bytes;
   json["code_bytes"] = report.code_bytes;

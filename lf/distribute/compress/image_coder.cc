@@ -2,6 +2,9 @@
 #include "lf/distribute/compress/image_coder.h"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
+#include <variant>
 
 #include "lf/core/check.h"
 
@@ -12,8 +15,9 @@ constexpr double kLargest = 65535;
 
 }  // namespace
 
-ImageCoder::ImageCoder(const RadianceEncoding& encoding, const CodecSettings& settings)
-    : encoding_(encoding), settings_(settings) {
+ImageCoder::ImageCoder(const RadianceEncoding& encoding, const CodecSettings& settings,
+                       KeepFiles files)
+    : encoding_(encoding), settings_(settings), files_(files) {
   if (encoding.transfer == Transfer::kLinear && LevelsFit(encoding, 16))
     curve_.emplace(encoding.black_level, encoding.white_level.value_or(kLargest));
 }
@@ -27,6 +31,14 @@ Image<uint16_t> ImageCoder::OnCurve(const CodecPixels& pixels) const {
   Image<uint16_t> on_curve = std::get<Image<uint16_t>>(pixels);
   for (uint16_t& value : on_curve.pixels()) value = curve_->OnCurve(value);
   return on_curve;
+}
+
+Result<CodedImage> ImageCoder::CodeOrFile(const LightField& light_field, LfImageId id,
+                                          const RecordedImage& image) const {
+  if (files_ == KeepFiles::kNone) return Code(image);
+  LF_ASSIGN_OR_RETURN(std::optional<CodedImage> file, FileAsCode(light_field, id, image));
+  if (file && files_ == KeepFiles::kAll) return *std::move(file);
+  return SmallerOf(Code(image), std::move(file));
 }
 
 CodedImage ImageCoder::Code(const RecordedImage& image) const {
@@ -43,6 +55,8 @@ CodedImage ImageCoder::Code(const RecordedImage& image) const {
 }
 
 CodeError ImageCoder::ErrorOf(const RecordedImage& image, const CodedImage& coded) const {
+  if (coded.values == StoredValues::kFile)
+    return {0, std::visit([](const auto& pixels) { return pixels.pixels().size(); }, image.pixels)};
   DecodedPart decoded;
   const Result<void> result = DecodeImage(coded.code, &decoded);
   LF_CHECK(result.has_value());

@@ -4,7 +4,11 @@
 
 #include <optional>
 
+#include "lf/core/ids.h"
+#include "lf/core/result.h"
 #include "lf/distribute/compress/code_quality.h"
+#include "lf/distribute/compress/keep_files.h"
+#include "lf/light_field/model/light_field.h"
 #include "lf/light_field/model/radiance.h"
 #include "lf/pixels/codec/lf_image_codec.h"
 #include "lf/storage/load/display_curve.h"
@@ -16,7 +20,13 @@ namespace lf {
 // An encoder for one light field and settings. The threshold of the settings is in grey steps.
 class ImageCoder {
  public:
-  ImageCoder(const RadianceEncoding& encoding, const CodecSettings& settings);
+  ImageCoder(const RadianceEncoding& encoding, const CodecSettings& settings,
+             KeepFiles files = KeepFiles::kNone);
+
+  // Returns the LF image `image` as the store keeps it: encoded, or as its file. kInput: the file
+  // cannot be read.
+  Result<CodedImage> CodeOrFile(const LightField& light_field, LfImageId id,
+                                const RecordedImage& image) const;
 
   // Encodes an image. The default profile encodes linear values of 16 bits along the display curve.
   CodedImage Code(const RecordedImage& image) const;
@@ -24,8 +34,9 @@ class ImageCoder {
   // Returns the levels of the display curve if images are encoded along it.
   std::optional<DisplayLevels> display_levels() const;
 
-  // Measures the error in stored values. The error of linear values of 16 bits is measured along
-  // the display curve for all profiles, because equal errors along this curve are equally visible.
+  // Measures the error in stored values; none for a file. The error of linear values of 16 bits is
+  // measured along the display curve for all profiles, because equal errors along this curve are
+  // equally visible.
   CodeError ErrorOf(const RecordedImage& image, const CodedImage& coded) const;
 
  private:
@@ -36,6 +47,7 @@ class ImageCoder {
 
   const RadianceEncoding encoding_;
   const CodecSettings settings_;
+  const KeepFiles files_;
   std::optional<DisplayCurve> curve_;
 };
 

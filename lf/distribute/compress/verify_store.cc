@@ -23,7 +23,7 @@ Result<void> CheckStoreFacts(const CompressSource& source, const VerifyOptions& 
     return InputError(fmt::format(
         "{}: is a packed store of another light field: give the light field that it was made from",
         options.store.string()));
-  if (const std::string asked = NameOf(options.settings); facts.codec != asked)
+  if (const std::string asked = NameOf(options.settings, options.files); facts.codec != asked)
     return InputError(fmt::format(
         "{}: was made with the encoding \"{}\", but the options ask for \"{}\": give the "
         "options that the store was made with",
@@ -37,7 +37,7 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
   const LightField& light_field = source.light_field;
   LF_ASSIGN_OR_RETURN(const std::vector<PackedCode> codes, FindCodes(options.store, light_field));
 
-  const ImageCoder coder(light_field.encoding, options.settings);
+  const ImageCoder coder(light_field.encoding, options.settings, options.files);
   std::mutex mutex;
   std::vector<std::unique_ptr<PackedCodeReader>> readers;
   size_t done = 0, verified = 0;
@@ -71,14 +71,26 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
     LF_ASSIGN_OR_RETURN(std::unique_ptr<PackedCodeReader> reader, reader_of_thread());
     const Result<PackedCodeReader::Bytes> bytes = reader->Read(code);
     LF_RETURN_IF_ERROR(bytes);
-    const CodedImage again = coder.Code(*image);
-    DecodedPart decoded;
-    LF_RETURN_IF_ERROR(DecodeImage(bytes->code, &decoded));
+    LF_ASSIGN_OR_RETURN(const CodedImage again, coder.CodeOrFile(light_field, id, *image));
+    if (code.values != StoredValues::kFile) {
+      DecodedPart decoded;
+      LF_RETURN_IF_ERROR(DecodeImage(bytes->code, &decoded));
+    }
     if (code.rect != again.rect || code.values != again.values || bytes->code != again.code ||
         bytes->mask != again.mask)
       return InputError(
           "the encoded image in the store differs from the image file; make the store again with "
           "{overwrite}");
+    for (size_t left_out = 1; left_out <= again.front_ends.size(); ++left_out) {
+      const auto front = reader->ReadFront(code, left_out);
+      LF_RETURN_IF_ERROR(front);
+      // Stores of earlier builds have none.
+      if (!*front) break;
+      if (!std::string_view(again.code).starts_with((*front)->code))
+        return InputError(
+            "the front of the encoded image in the store differs from the image file; make the "
+            "store again with {overwrite}");
+    }
     const std::lock_guard lock(mutex);
     readers.push_back(std::move(reader));
     ++verified;

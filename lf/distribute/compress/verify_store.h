@@ -10,6 +10,7 @@
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
 #include "lf/distribute/compress/compress_source.h"
+#include "lf/distribute/compress/keep_files.h"
 #include "lf/pixels/codec/lf_image_codec.h"
 #include "lf/storage/packed/packed_store_writer.h"
 
@@ -17,9 +18,10 @@ namespace lf {
 
 struct VerifyOptions {
   std::filesystem::path store;
-  CodecSettings settings;  // settings that the store must have been made with
-  PackedStorePlan plan;    // the plan that the store must match
-  bool any_shards = true;  // true: shards may have any size
+  CodecSettings settings;              // settings that the store must have been made with
+  KeepFiles files = KeepFiles::kNone;  // as the store must have been made
+  PackedStorePlan plan;                // the plan that the store must match
+  bool any_shards = true;              // true: shards may have any size
   std::function<bool()> is_interrupted;
 };
 
@@ -27,11 +29,11 @@ struct VerifyOptions {
 // of other LF images, another calibration or other settings, or is missing, unfinished or damaged.
 Result<void> CheckStoreFacts(const CompressSource& source, const VerifyOptions& options);
 
-// Reads all encoded images back. Each must equal the result of encoding its LF image, and be
-// decoded without damage. If an LF image is missing in the store, its file must not be readable.
-// Returns the number of encoded images that were read. kInput: an encoded image differs or is
-// damaged (the message states the first and the count), or the store is of another light field or
-// other settings. kInterrupted: is_interrupted() returned true.
+// Reads all encoded images back. Each must equal the result of encoding its LF image, or its file,
+// and be decoded without damage. If an LF image is missing in the store, its file must not be
+// readable. Returns the number of encoded images that were read. kInput: an encoded image differs
+// or is damaged (the message states the first and the count), or the store is of another light
+// field or other settings. kInterrupted: is_interrupted() returned true.
 //   progress  called with the number of LF images that have been checked
 Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& options,
                            ThreadPool& pool, const std::function<void(size_t)>& progress);

@@ -8,13 +8,25 @@
 #include <utility>
 
 #include "lf/pixels/codec/lf_image_codec.h"
+#include "lf/pixels/files/image_file.h"
 
 namespace lf {
 namespace {
 
-Result<void> DecodeAll(std::string_view code) {
+Error Named(const Error& error, const std::string& name) {
+  return {error.kind, fmt::format("{}: {}", name, error.message)};
+}
+
+Result<void> DecodeAll(std::string_view code, const std::string& name) {
   DecodedPart part;
-  return DecodeImage(code, &part);
+  if (const Result<void> decoded = DecodeImage(code, &part); !decoded)
+    return Named(decoded.error(), name);
+  return {};
+}
+
+Result<void> DecodeFile(std::string_view bytes, const std::string& name) {
+  LF_RETURN_IF_ERROR(ReadImageBytes(bytes, name));
+  return {};
 }
 
 }  // namespace
@@ -42,11 +54,11 @@ CodeChecker::Fault CodeChecker::Check(LfImageId id, bool decode) const {
                         "the calibration",
                         name, k.width_px, k.height_px)};
   if (!decode) return {};
-  const Result<void> decoded = Decode(id);
-  return {false, decoded ? "" : fmt::format("{}: {}", name, decoded.error().message)};
+  const Result<void> decoded = Decode(id, name);
+  return {false, decoded ? "" : decoded.error().message};
 }
 
-Result<void> CodeChecker::Decode(LfImageId id) const {
+Result<void> CodeChecker::Decode(LfImageId id, const std::string& name) const {
   std::optional<PackedCodeReader> reader;
   {
     const std::lock_guard lock(mutex_);
@@ -58,12 +70,13 @@ Result<void> CodeChecker::Decode(LfImageId id) const {
   if (!reader) {
     LF_ASSIGN_OR_RETURN(reader, PackedCodeReader::Open(light_field_.folder));
   }
+  const bool is_file = codes_[id.value].values == StoredValues::kFile;
   Result<void> result;
   if (const auto bytes = reader->Read(codes_[id.value]); !bytes) {
-    result = bytes.error();
+    result = Named(bytes.error(), name);
   } else {
-    result = DecodeAll(bytes->code);
-    if (result && !bytes->mask.empty()) result = DecodeAll(bytes->mask);
+    result = is_file ? DecodeFile(bytes->code, name) : DecodeAll(bytes->code, name);
+    if (result && !bytes->mask.empty()) result = DecodeAll(bytes->mask, name);
   }
   const std::lock_guard lock(mutex_);
   readers_.push_back(*std::move(reader));

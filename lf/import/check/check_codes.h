@@ -32,7 +32,8 @@ class CodeChecker {
 
  private:
   CodeChecker(const LightField& light_field, std::vector<PackedCode> codes);
-  Result<void> Decode(LfImageId id) const;
+  // The message of an error begins with `name`.
+  Result<void> Decode(LfImageId id, const std::string& name) const;
 
   const LightField& light_field_;
   const std::vector<PackedCode> codes_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// DecodeImage() with a chosen implementation of the transforms. Internal to this folder.
+// DecodeImage() and DecodeReduced() with a chosen implementation of the transforms. Internal to
+// this folder.
 #pragma once
 
 #include <string_view>
@@ -11,5 +12,7 @@ namespace lf {
 
 Result<void> DecodeImageBy(Transform transform, std::string_view code, const PixelRect& wanted,
                            DecodedPart* part);
+Result<void> DecodeReducedBy(Transform transform, std::string_view code, int reduction,
+                             CodecPixels* pixels);
 
 }  // namespace lf

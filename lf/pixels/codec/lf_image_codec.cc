@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
+#include <numeric>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -17,6 +19,9 @@
 
 namespace lf {
 namespace {
+
+constexpr int kColoursOfMosaic = 4;            // channels of a reduced mosaic
+constexpr uint64_t kMostCodeBytes = 1U << 30;  // most bytes of an encoded image
 
 template <class Pixel>
 ImageView<Pixel> Part(ImageView<Pixel> image, const PixelRect& rect) {
@@ -78,24 +83,43 @@ Error DamagedCode(std::string_view fault) {
       fmt::format("is a damaged encoded LF image: {}; copy or make the packed store again", fault));
 }
 
-// Reads head and table of contents from the front of `code`, and divides the rest into sections.
-Result<Contents> TakeContents(std::string_view code) {
-  Contents contents;
-  LF_ASSIGN_OR_RETURN(contents.head, TakeHead(&code));
-  const size_t count = contents.head.tile_count() * (contents.head.info.levels + 1);
+// Reads the table of contents from the front of `code`: the sizes of all sections.
+//   most_bytes  no section is larger
+Result<std::vector<uint64_t>> TakeSizes(const CodeHead& head, uint64_t most_bytes,
+                                        std::string_view* code) {
+  const size_t count = head.tile_count() * (head.info.levels + 1);
   // The table has at least one byte for each section.
-  if (count > code.size())
-    return DamagedCode(fmt::format("{} bytes are too few for {} packets", code.size(), count));
+  if (count > code->size())
+    return DamagedCode(fmt::format("{} bytes are too few for {} packets", code->size(), count));
   std::vector<uint64_t> sizes(count);
   for (uint64_t& size : sizes)
-    if (!TakeNumber(&code, code.size(), &size))
+    if (!TakeNumber(code, most_bytes, &size))
       return DamagedCode(fmt::format(
-          "its table of contents states a packet of more than the {} bytes that are left",
-          code.size()));
-  contents.sections.resize(count);
-  for (size_t i = 0; i < count; ++i)
-    if (!TakeBytes(&code, sizes[i], &contents.sections[i]))
+          "its table of contents states a packet of more than the {} bytes of all", most_bytes));
+  return sizes;
+}
+
+// Reads head and table of contents from the front of `code`, and divides the rest into the sections
+// of the resolutions up to `last_resolution`. `code` may end behind them.
+//   most_bytes  size of the whole encoded image, or more
+Result<Contents> TakeFront(std::string_view* code, CodeHead head, int last_resolution,
+                           uint64_t most_bytes) {
+  Contents contents{std::move(head), {}};
+  LF_ASSIGN_OR_RETURN(const std::vector<uint64_t> sizes,
+                      TakeSizes(contents.head, most_bytes, code));
+  contents.sections.resize(contents.head.tile_count() * (last_resolution + 1));
+  for (size_t i = 0; i < contents.sections.size(); ++i)
+    if (!TakeBytes(code, sizes[i], &contents.sections[i]))
       return DamagedCode("it is shorter than the packets in its table of contents");
+  return contents;
+}
+
+// Reads the whole encoded image.
+Result<Contents> TakeContents(std::string_view code) {
+  const size_t bytes = code.size();
+  LF_ASSIGN_OR_RETURN(CodeHead head, TakeHead(&code));
+  const int levels = head.info.levels;
+  LF_ASSIGN_OR_RETURN(Contents contents, TakeFront(&code, std::move(head), levels, bytes));
   if (!code.empty())
     return DamagedCode(fmt::format("{} bytes follow its last packet", code.size()));
   return contents;
@@ -132,6 +156,67 @@ Result<void> Decode(Transform transform, const Contents& contents, const PixelRe
       return DamagedCode(fmt::format("the tile at pixel ({}, {}) cannot be decoded",
                                      head.TileRect(tile).x_begin, head.TileRect(tile).y_begin));
   }
+  return {};
+}
+
+// Number of resolutions that are left out for a reduction by 2^n. A mosaic is halved by its first
+// level, which belongs to no resolution.
+int LeftOut(const CodeInfo& info, int n) { return info.layout == PixelLayout::kMosaic ? n - 1 : n; }
+
+// Number of channels of a reduced picture.
+int ReducedChannels(PixelLayout layout) {
+  return layout == PixelLayout::kMosaic ? kColoursOfMosaic : ChannelsOf(layout);
+}
+
+// Makes means of squares of 2^n x 2^n pixels of samples that belong to the upper left pixels of
+// these squares. The centre of a square lies (2^n - 1) / 2 pixels farther, so that its mean is
+// about a value between this sample and the next ones, in integers. [height][width][channels]; the
+// samples may have one more column and row.
+template <class Pixel>
+void ToMeans(const Image<Pixel>& samples, int n, Image<Pixel>* means) {
+  const uint32_t next = (1U << n) - 1, here = (1U << n) + 1;  // in 1 / 2^(n + 1)
+  const int shift = 2 * (n + 1), channels = samples.channels();
+  const uint32_t half = 1U << (shift - 1);
+  // Values of the last column have no next sample if it is the last one of the samples.
+  const int values = means->width() * channels;
+  const int with_next = std::min(means->width(), samples.width() - 1) * channels;
+  for (int y = 0; y < means->height(); ++y) {
+    const Pixel* const upper = samples.row(y);
+    const Pixel* const lower = samples.row(std::min(y + 1, samples.height() - 1));
+    Pixel* const out = means->row(y);
+    for (int i = 0; i < with_next; ++i)
+      out[i] = static_cast<Pixel>((here * (here * upper[i] + next * upper[i + channels]) +
+                                   next * (here * lower[i] + next * lower[i + channels]) + half) >>
+                                  shift);
+    for (int i = with_next; i < values; ++i)
+      out[i] =
+          static_cast<Pixel>(((here + next) * (here * upper[i] + next * lower[i]) + half) >> shift);
+  }
+}
+
+template <class Pixel>
+Result<void> DecodeMeans(Transform transform, const Contents& contents, int n,
+                         CodecPixels* pixels) {
+  const CodeHead& head = contents.head;
+  const int side = 1 << n, channels = ReducedChannels(head.info.layout);
+  const auto samples_along = [side](int count) { return (count + side - 1) / side; };
+  Image<Pixel> samples(samples_along(head.info.width), samples_along(head.info.height), channels);
+  std::vector<std::string_view> sections(contents.sections.size() / head.tile_count());
+  for (size_t tile = 0; tile < head.tile_count(); ++tile) {
+    const PixelRect rect = head.TileRect(tile);
+    for (size_t r = 0; r < sections.size(); ++r)
+      sections[r] = contents.sections[r * head.tile_count() + tile];
+    const int x = rect.x_begin / side, y = rect.y_begin / side;
+    const ImageView<Pixel> part = Part(
+        samples.view(), {x, y, x + samples_along(rect.width()), y + samples_along(rect.height())});
+    if (!DecodeReducedTile(transform, head, sections, rect.width(), rect.height(), part))
+      return DamagedCode(
+          fmt::format("the tile at pixel ({}, {}) cannot be decoded", rect.x_begin, rect.y_begin));
+  }
+  if (!std::holds_alternative<Image<Pixel>>(*pixels)) *pixels = Image<Pixel>();
+  auto& means = std::get<Image<Pixel>>(*pixels);
+  means.Resize(head.info.width / side, head.info.height / side, channels);
+  ToMeans(samples, n, &means);
   return {};
 }
 
@@ -181,6 +266,47 @@ Result<void> DecodeImageBy(Transform transform, std::string_view code, const Pix
   part->rect = TilesAround(contents.head, inside);
   return info.bits == 8 ? Decode<uint8_t>(transform, contents, part->rect, &part->pixels)
                         : Decode<uint16_t>(transform, contents, part->rect, &part->pixels);
+}
+
+int LargestReduction(const CodeInfo& info) {
+  if (info.profile == CodecProfile::kThesis) return 1;
+  int n = info.layout == PixelLayout::kMosaic ? info.levels + 1 : info.levels;
+  while (n > 0 && std::min(info.width, info.height) < 1 << n) --n;
+  return 1 << n;
+}
+
+Result<std::vector<uint64_t>> ResolutionEnds(std::string_view code) {
+  const size_t bytes = code.size();
+  LF_ASSIGN_OR_RETURN(const CodeHead head, TakeHead(&code));
+  LF_ASSIGN_OR_RETURN(const std::vector<uint64_t> sizes, TakeSizes(head, bytes, &code));
+  std::vector<uint64_t> ends(head.info.levels + 1, bytes - code.size());
+  for (size_t r = 0; r < ends.size(); ++r) {
+    const auto begin = sizes.begin() + static_cast<ptrdiff_t>(r * head.tile_count());
+    ends[r] = std::accumulate(begin, begin + static_cast<ptrdiff_t>(head.tile_count()),
+                              r == 0 ? ends[0] : ends[r - 1]);
+  }
+  return ends;
+}
+
+int ResolutionFor(const CodeInfo& info, int reduction) {
+  return info.levels - LeftOut(info, std::countr_zero(static_cast<unsigned>(reduction)));
+}
+
+Result<void> DecodeReducedBy(Transform transform, std::string_view code, int reduction,
+                             CodecPixels* pixels) {
+  LF_ASSIGN_OR_RETURN(CodeHead head, TakeHead(&code));
+  LF_CHECK(reduction >= 2 && std::has_single_bit(static_cast<unsigned>(reduction)) &&
+           reduction <= LargestReduction(head.info));
+  const int last_resolution = ResolutionFor(head.info, reduction);
+  LF_ASSIGN_OR_RETURN(const Contents contents,
+                      TakeFront(&code, std::move(head), last_resolution, kMostCodeBytes));
+  const int n = std::countr_zero(static_cast<unsigned>(reduction));
+  return contents.head.info.bits == 8 ? DecodeMeans<uint8_t>(transform, contents, n, pixels)
+                                      : DecodeMeans<uint16_t>(transform, contents, n, pixels);
+}
+
+Result<void> DecodeReduced(std::string_view code, int reduction, CodecPixels* pixels) {
+  return DecodeReducedBy(Transform::kSimd, code, reduction, pixels);
 }
 
 Result<void> DecodeImage(std::string_view code, const PixelRect& wanted, DecodedPart* part) {

@@ -14,6 +14,7 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "lf/core/geometry.h"
 #include "lf/core/image.h"
@@ -93,5 +94,26 @@ struct DecodedPart {
 Result<void> DecodeImage(std::string_view code, const PixelRect& wanted, DecodedPart* part);
 // Decodes the whole image.
 Result<void> DecodeImage(std::string_view code, DecodedPart* part);
+
+// The following functions make a smaller picture of the front of an encoded image alone: `code` may
+// be cut off at ResolutionEnds()[ResolutionFor()] bytes.
+
+// Returns the largest reduction that DecodeReduced() can make, a power of 2: 1 if it can make none,
+// as for kThesis.
+int LargestReduction(const CodeInfo& info);
+// Returns the number of the last resolution (doc/formats/lf_image.md) that DecodeReduced() reads.
+//   reduction  from 2 to LargestReduction(), a power of 2
+int ResolutionFor(const CodeInfo& info, int reduction);
+// Returns for each resolution the number of bytes at the front of the encoded image that contain it
+// and all coarser ones; ascending. kInput as ReadCodeInfo().
+Result<std::vector<uint64_t>> ResolutionEnds(std::string_view code);
+// Decodes the whole image at a reduced size: each pixel is about the mean of a square of reduction
+// x reduction pixels. Pixels that fill no square are cut off on the right and below. Is 29 to 36 dB
+// near the mean (doc/codec.md, "Smaller pictures").
+//   pixels  [height / reduction][width / reduction][channels]: 1 for grey, 3 for RGB, and 4 for a
+//           mosaic: the means of the pixels at (even, even), (odd, even), (even, odd) and (odd,
+//           odd) columns and rows
+// Errors are those of DecodeImage().
+Result<void> DecodeReduced(std::string_view code, int reduction, CodecPixels* pixels);
 
 }  // namespace lf

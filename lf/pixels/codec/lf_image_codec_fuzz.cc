@@ -20,6 +20,19 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size_bytes) {
   constexpr int kMostPixels = 512;
   const lf::PixelRect wanted = {info->width / 3, info->height / 3, info->width, info->height};
   if (info->width > kMostPixels || info->height > kMostPixels) return 0;
+  if (const int reduction = lf::LargestReduction(*info); reduction > 1) {
+    lf::CodecPixels fast, slow;
+    const auto by_simd = lf::DecodeReducedBy(lf::Transform::kSimd, code, reduction, &fast);
+    const auto by_reference =
+        lf::DecodeReducedBy(lf::Transform::kReference, code, reduction, &slow);
+    LF_CHECK(by_simd.has_value() == by_reference.has_value());
+    if (by_simd)
+      std::visit(
+          [&]<class Pixel>(const lf::Image<Pixel>& image) {
+            LF_CHECK(image.pixels() == std::get<lf::Image<Pixel>>(slow).pixels());
+          },
+          fast);
+  }
   lf::DecodedPart fast, slow;
   const auto by_simd = lf::DecodeImageBy(lf::Transform::kSimd, code, wanted, &fast);
   const auto by_reference = lf::DecodeImageBy(lf::Transform::kReference, code, wanted, &slow);

@@ -289,6 +289,121 @@ TEST(LfImageCodec, SixteenBitsAreTheSamePicture) {
   }
 }
 
+// Returns the mean of each square of `reduction` x `reduction` pixels; of each colour of a mosaic.
+template <class Pixel>
+Image<double> MeansOf(const Image<Pixel>& image, PixelLayout layout, int reduction) {
+  const bool is_mosaic = layout == PixelLayout::kMosaic;
+  const int channels = is_mosaic ? 4 : image.channels(), step = is_mosaic ? 2 : 1;
+  Image<double> means(image.width() / reduction, image.height() / reduction, channels);
+  for (int y = 0; y < means.height(); ++y)
+    for (int x = 0; x < means.width(); ++x)
+      for (int c = 0; c < channels; ++c) {
+        double sum = 0;
+        for (int v = is_mosaic ? c / 2 : 0; v < reduction; v += step)
+          for (int u = is_mosaic ? c % 2 : 0; u < reduction; u += step)
+            sum += image.at(x * reduction + u, y * reduction + v, is_mosaic ? 0 : c);
+        means.at(x, y, c) = sum * step * step / (reduction * reduction);
+      }
+  return means;
+}
+
+// A picture of slow changes, whose last columns and rows are the same: those are the means of
+// samples that the encoded image lacks.
+template <class Pixel>
+Image<Pixel> SlowPicture(int width, int height, PixelLayout layout) {
+  Image<Pixel> image(width, height, layout == PixelLayout::kRgb ? 3 : 1);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      for (int c = 0; c < image.channels(); ++c) {
+        const int colour = layout == PixelLayout::kMosaic ? x % 2 + 2 * (y % 2) : c;
+        const double v = 0.4 + 0.08 * colour + 0.15 * std::cos(3.14159265 * x / width) +
+                         0.1 * std::cos(3.14159265 * y / height);
+        image.at(x, y, c) = static_cast<Pixel>(std::lround(v * kMost<Pixel>));
+      }
+  return image;
+}
+
+// A reduced picture is the mean of squares if the picture changes slowly, whatever the size, the
+// layout, the reduction and the number of tiles. A last column or row may miss the samples
+// behind it.
+TEST(LfImageCodec, AReducedPictureHasTheMeansOfSquares) {
+  for (const auto layout : {PixelLayout::kGrey, PixelLayout::kRgb, PixelLayout::kMosaic})
+    for (const Size size : {Size{320, 240}, Size{333, 251}, Size{1100, 90}})
+      for (const auto profile : {CodecProfile::kDefault, CodecProfile::kLossless})
+        for (const int levels : {1, 2, 4}) {
+          const auto image = SlowPicture<uint8_t>(size.width, size.height, layout);
+          const auto deep = SlowPicture<uint16_t>(size.width, size.height, layout);
+          CodecSettings settings{profile, levels, 1, 256};
+          const std::string code = EncodeImage(image, layout, settings);
+          const std::string deep_code = EncodeImage(deep, layout, settings);
+          const CodeInfo info = *ReadCodeInfo(code);
+          const int largest = LargestReduction(info);
+          EXPECT_EQ(largest, 1 << (levels + (layout == PixelLayout::kMosaic ? 1 : 0)));
+          for (int reduction = 2; reduction <= largest; reduction *= 2) {
+            CodecPixels reduced, deep_reduced;
+            ASSERT_TRUE(DecodeReduced(code, reduction, &reduced));
+            ASSERT_TRUE(DecodeReduced(deep_code, reduction, &deep_reduced));
+            const auto& small = std::get<Image<uint8_t>>(reduced);
+            const auto& deep_small = std::get<Image<uint16_t>>(deep_reduced);
+            const Image<double> means = MeansOf(image, layout, reduction);
+            const Image<double> deep_means = MeansOf(deep, layout, reduction);
+            ASSERT_EQ(small.width(), means.width());
+            ASSERT_EQ(small.height(), means.height());
+            ASSERT_EQ(small.channels(), means.channels());
+            double worst = 0, deep_worst = 0, sum = 0;
+            for (size_t i = 0; i < means.pixels().size(); ++i) {
+              worst = std::max(worst, std::abs(small.pixels()[i] - means.pixels()[i]));
+              sum += small.pixels()[i] - means.pixels()[i];
+              deep_worst =
+                  std::max(deep_worst, std::abs(deep_small.pixels()[i] - deep_means.pixels()[i]));
+            }
+            const std::string where =
+                Named(size, layout, settings) + " / " + std::to_string(reduction);
+            // Without fraction bits, each level of 8-bit values rounds.
+            EXPECT_LE(worst, profile == CodecProfile::kLossless ? 7 : 2) << where;
+            EXPECT_NEAR(sum / static_cast<double>(means.pixels().size()), 0,
+                        layout == PixelLayout::kMosaic ? 2.5 : 1)
+                << where;
+            EXPECT_LE(deep_worst, 1.2 * 256) << where;
+          }
+        }
+}
+
+// The front of an encoded image is enough, and one byte less is an error. The reference transforms
+// give the same, for pictures of all kinds.
+TEST(LfImageCodec, AReducedPictureNeedsOnlyTheFront) {
+  std::mt19937 random(9);
+  for (int i = 0; i < 200; ++i) {
+    const Size size = AnySize(random);
+    const PixelLayout layout = AnyLayout(random);
+    const std::string code = EncodeImage(AnyPicture(random, size.width, size.height, layout),
+                                         layout, AnySettings(random));
+    const CodeInfo info = *ReadCodeInfo(code);
+    const auto ends = ResolutionEnds(code);
+    ASSERT_TRUE(ends);
+    EXPECT_EQ(ends->size(), static_cast<size_t>(info.levels + 1));
+    EXPECT_EQ(ends->back(), code.size());
+    EXPECT_TRUE(std::is_sorted(ends->begin(), ends->end()));
+    for (int reduction = 2; reduction <= LargestReduction(info); reduction *= 2) {
+      const uint64_t end = (*ends)[ResolutionFor(info, reduction)];
+      CodecPixels of_front, of_all, of_reference;
+      const std::string_view front = std::string_view(code).substr(0, end);
+      ASSERT_TRUE(DecodeReduced(front, reduction, &of_front));
+      ASSERT_TRUE(DecodeReduced(code, reduction, &of_all));
+      ASSERT_TRUE(DecodeReducedBy(Transform::kReference, front, reduction, &of_reference));
+      EXPECT_TRUE(Same(of_front, of_all) && Same(of_front, of_reference));
+      EXPECT_FALSE(DecodeReduced(front.substr(0, end - 1), reduction, &of_front));
+    }
+  }
+}
+
+TEST(LfImageCodec, TheThesisProfileIsNotReduced) {
+  const Image<uint8_t> image(40, 30);
+  const std::string code =
+      EncodeImage(image, PixelLayout::kGrey, {CodecProfile::kThesis, 2, 0, 256});
+  EXPECT_EQ(LargestReduction(*ReadCodeInfo(code)), 1);
+}
+
 // With the finest quantiser and threshold 0, only rounding causes errors, which are too small to
 // change an 8-bit pixel.
 TEST(LfImageCodec, TheThesisProfileIsNearlyExactWithoutThreshold) {

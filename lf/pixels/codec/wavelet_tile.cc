@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "lf/core/check.h"
@@ -182,45 +183,82 @@ class TileReader {
   // subbands of the finest level, which stay in the scratch memory until the next call. Returns
   // false if a stream is damaged.
   [[nodiscard]] bool Read(int component, Size size, CodedBands<T>* finest) {
-    const int levels = head_.info.levels;
-    const Size smallest = LowSize(size, levels);
-    T* low = WaveletScratch<T>::Room(&scratch_.low[0], smallest.count());
-    if (!TakeCoefficients(transform_, &sections_[0], smallest.count(), low)) return false;
-    Unpredict(smallest, low);
-    T low_step = Step(component, 0, false);
-    for (int resolution = 1; resolution <= levels; ++resolution) {
-      const int level = levels + 1 - resolution;
-      const Size here = LowSize(size, level - 1);
-      T* const details = WaveletScratch<T>::Room(&scratch_.details, DetailCount(here));
-      if (!TakeCoefficients(transform_, &sections_[resolution], DetailCount(here), details))
-        return false;
-      *finest = {here.width, here.height, {}};
-      const bool is_doubled = resolution > 1 && IsDoubled(head_, FirstDepth(head_) + level - 1);
-      const T step = Step(component, resolution, false);
-      const T diagonal = Step(component, resolution, true);
-      const T* next = details;
-      finest->bands[kLowLow] = {low, low_step, is_doubled};
-      for (const Band band : {kHighLow, kLowHigh, kHighHigh}) {
-        finest->bands[band] = {next, band == kHighHigh ? diagonal : step, false};
-        next += BandSize(band, here.width, here.height);
-      }
-      if (level == 1) break;
-      low = WaveletScratch<T>::Room(&scratch_.low[resolution % 2], here.count());
-      Synthesize(transform_, *finest, low);
-      low_step = 1;
+    if (!Begin(component, size)) return false;
+    while (true) {
+      if (!ReadLevel(finest)) return false;
+      if (resolution_ == head_.info.levels) return true;
+      SynthesizeLow(*finest);
     }
+  }
+
+  // Reads the next component up to a resolution, from as many sections as it needs. Sets `low` to
+  // the low subband that the next finer level would need, which stays in the scratch memory until
+  // the next call. Returns false if a stream is damaged.
+  [[nodiscard]] bool ReadLow(int component, Size size, int resolution, CodedBand<T>* low) {
+    if (!Begin(component, size)) return false;
+    while (resolution_ < resolution) {
+      CodedBands<T> bands;
+      if (!ReadLevel(&bands)) return false;
+      SynthesizeLow(bands);
+    }
+    *low = low_;
     return true;
   }
 
  private:
-  T Step(int component, int resolution, bool is_diagonal) const {
-    return static_cast<T>(head_.steps[StepIndex(head_, component, resolution, is_diagonal)]);
+  // Reads the approximation of a component.
+  bool Begin(int component, Size size) {
+    component_ = component;
+    size_ = size;
+    resolution_ = 0;
+    const Size smallest = LowSize(size, head_.info.levels);
+    T* const values = WaveletScratch<T>::Room(&scratch_.low[0], smallest.count());
+    if (!TakeCoefficients(transform_, &sections_[0], smallest.count(), values)) return false;
+    Unpredict(smallest, values);
+    low_ = {values, Step(false), false};
+    return true;
+  }
+
+  // Reads the details of the next resolution. Sets `bands` to the subbands of its level.
+  bool ReadLevel(CodedBands<T>* bands) {
+    ++resolution_;
+    const Size here = LowSize(size_, level() - 1);
+    T* const details = WaveletScratch<T>::Room(&scratch_.details, DetailCount(here));
+    if (!TakeCoefficients(transform_, &sections_[resolution_], DetailCount(here), details))
+      return false;
+    *bands = {here.width, here.height, {}};
+    bands->bands[kLowLow] = low_;
+    const T* next = details;
+    for (const Band band : {kHighLow, kLowHigh, kHighHigh}) {
+      bands->bands[band] = {next, Step(band == kHighHigh), false};
+      next += BandSize(band, here.width, here.height);
+    }
+    return true;
+  }
+
+  // Synthesises the plane whose subbands ReadLevel() has read.
+  void SynthesizeLow(const CodedBands<T>& bands) {
+    const Size here = {bands.width, bands.height};
+    T* const values = WaveletScratch<T>::Room(&scratch_.low[resolution_ % 2], here.count());
+    Synthesize(transform_, bands, values);
+    const int depth = FirstDepth(head_) + level() - 2;
+    low_ = {values, 1, depth > 0 && IsDoubled(head_, depth)};
+  }
+
+  // Returns the level whose details are those of the resolution.
+  int level() const { return head_.info.levels + 1 - resolution_; }
+  T Step(bool is_diagonal) const {
+    return static_cast<T>(head_.steps[StepIndex(head_, component_, resolution_, is_diagonal)]);
   }
 
   const Transform transform_;
   const CodeHead& head_;
   const std::span<std::string_view> sections_;
   WaveletScratch<T>& scratch_ = WaveletScratch<T>::OfThread();
+  int component_ = 0;
+  Size size_;
+  int resolution_ = 0;  // the last one that was read
+  CodedBand<T> low_;    // the low subband of the next level
 };
 
 template <class T, class Pixel>
@@ -251,6 +289,99 @@ bool DecodeAs(Transform transform, const CodeHead& head, std::span<std::string_v
   std::array<const T*, kRgbComponents> components{};
   for (int c = 0; c < kRgbComponents; ++c) components[c] = scratch.components[c].data();
   MergeColours(transform, components, scale, pixels);
+  return true;
+}
+
+// Returns the number of fraction bits of the low subbands from which reduced pixels are made.
+int LowFractionBits(const CodeHead& head) {
+  const bool any_doubled = head.info.layout == PixelLayout::kMosaic || head.info.levels > 1;
+  return head.fraction_bits + (any_doubled && IsDoubled(head, 1) ? 1 : 0);
+}
+
+// Converts the low subbands of the four components of a mosaic to the colours of its squares of 2 x
+// 2 pixels, for colours that do not change from one square to the next: then high is odd - even,
+// and low their mean. Damaged files may have coefficients of any size, so sums are 64 bits wide.
+//   bands  [component][y][x], each of the size of `pixels`
+template <class T, class Pixel>
+void MergeMosaic(const std::array<const T*, kBands>& bands, const PixelScale& scale,
+                 ImageView<Pixel> pixels) {
+  constexpr int kFurtherBits = 2;  // nothing is rounded before the end
+  const int bits = scale.fraction_bits + kFurtherBits;
+  const int64_t half = int64_t{1} << bits >> 1;
+  const auto even_and_odd = [](int64_t low, int64_t high) {
+    const int64_t even = low - (high >> 1);
+    return std::array<int64_t, 2>{even, even + high};
+  };
+  for (int y = 0; y < pixels.height; ++y) {
+    Pixel* out = pixels.row(y);
+    for (int x = 0; x < pixels.width; ++x) {
+      const size_t i = static_cast<size_t>(y) * pixels.width + x;
+      const auto value = [&](Band band) { return int64_t{bands[band][i]} << kFurtherBits; };
+      const auto low = even_and_odd(value(kLowLow), value(kLowHigh));
+      const auto high = even_and_odd(value(kHighLow), value(kHighHigh));
+      for (const int row : {0, 1})
+        for (const int64_t colour : even_and_odd(low[row], high[row]))
+          *out++ = static_cast<Pixel>(std::clamp<int64_t>(((colour + half) >> bits) + scale.offset,
+                                                          0, std::numeric_limits<Pixel>::max()));
+    }
+  }
+}
+
+template <class T, class Pixel>
+void ScaleGrey(const T* values, const PixelScale& scale, ImageView<Pixel> pixels) {
+  const int32_t half = (1 << scale.fraction_bits) >> 1;
+  for (int y = 0; y < pixels.height; ++y) {
+    const T* const in = values + static_cast<size_t>(y) * pixels.width;
+    Pixel* const out = pixels.row(y);
+    for (int x = 0; x < pixels.width; ++x) {
+      const auto rounded =
+          static_cast<int32_t>(static_cast<uint32_t>(int32_t{in[x]}) + static_cast<uint32_t>(half));
+      const int32_t value =
+          static_cast<int32_t>(static_cast<uint32_t>(rounded >> scale.fraction_bits) +
+                               static_cast<uint32_t>(scale.offset));
+      out[x] = static_cast<Pixel>(std::clamp<int32_t>(value, 0, std::numeric_limits<Pixel>::max()));
+    }
+  }
+}
+
+// Copies the low subband of a component, times its step, to a plane of width x height values. The
+// high subbands of a mosaic may lack the last column or row, which is then repeated.
+template <class T>
+void CopyLow(const CodedBand<T>& low, Size size, int width, int height, T* plane) {
+  for (int y = 0; y < height; ++y) {
+    const T* const in = low.values + static_cast<size_t>(std::min(y, size.height - 1)) * size.width;
+    T* const out = plane + static_cast<size_t>(y) * width;
+    for (int x = 0; x < size.width; ++x)
+      out[x] = static_cast<T>(static_cast<uint32_t>(in[x]) * static_cast<uint32_t>(low.step));
+    for (int x = size.width; x < width; ++x) out[x] = out[x - 1];
+  }
+}
+
+template <class T, class Pixel>
+bool DecodeReducedAs(Transform transform, const CodeHead& head,
+                     std::span<std::string_view> sections, Size tile, ImageView<Pixel> pixels) {
+  const int resolution = static_cast<int>(sections.size()) - 1;
+  const size_t count = static_cast<size_t>(pixels.width) * pixels.height;
+  WaveletScratch<T>& scratch = WaveletScratch<T>::OfThread();
+  TileReader<T> reader(transform, head, sections);
+  std::array<const T*, kBands> planes{};
+  for (int c = 0; c < head.components(); ++c) {
+    T* const plane = WaveletScratch<T>::Room(&scratch.components[c], count);
+    planes[c] = plane;
+    const Size size = ComponentSize(head, c, tile.width, tile.height);
+    std::fill_n(plane, size.count() == 0 ? count : 0, T{0});
+    if (size.count() == 0) continue;
+    CodedBand<T> low;
+    if (!reader.ReadLow(c, size, resolution, &low)) return false;
+    CopyLow(low, LowSize(size, head.info.levels - resolution), pixels.width, pixels.height, plane);
+  }
+  const PixelScale scale{LowFractionBits(head), 1 << (head.info.bits - 1)};
+  if (head.info.layout == PixelLayout::kRgb)
+    MergeColours(transform, std::array{planes[0], planes[1], planes[2]}, scale, pixels);
+  else if (head.info.layout == PixelLayout::kMosaic)
+    MergeMosaic(planes, scale, pixels);
+  else
+    ScaleGrey(planes[0], scale, pixels);
   return true;
 }
 
@@ -345,6 +476,21 @@ bool DecodeWaveletTile(Transform transform, const CodeHead& head,
 template bool DecodeWaveletTile(Transform, const CodeHead&, std::span<std::string_view>,
                                 ImageView<uint8_t>);
 template bool DecodeWaveletTile(Transform, const CodeHead&, std::span<std::string_view>,
+                                ImageView<uint16_t>);
+
+template <class Pixel>
+bool DecodeReducedTile(Transform transform, const CodeHead& head,
+                       std::span<std::string_view> sections, int tile_width, int tile_height,
+                       ImageView<Pixel> pixels) {
+  const Size tile = {tile_width, tile_height};
+  if constexpr (sizeof(Pixel) == 1)
+    if (head.coefficient_bytes == 2)
+      return DecodeReducedAs<int16_t>(transform, head, sections, tile, pixels);
+  return DecodeReducedAs<int32_t>(transform, head, sections, tile, pixels);
+}
+template bool DecodeReducedTile(Transform, const CodeHead&, std::span<std::string_view>, int, int,
+                                ImageView<uint8_t>);
+template bool DecodeReducedTile(Transform, const CodeHead&, std::span<std::string_view>, int, int,
                                 ImageView<uint16_t>);
 
 }  // namespace lf

@@ -45,4 +45,18 @@ template <class Pixel>
 [[nodiscard]] bool DecodeWaveletTile(Transform transform, const CodeHead& head,
                                      std::span<std::string_view> sections, ImageView<Pixel> pixels);
 
+// Decodes a smaller picture of a tile from its first sections, which are those of the resolutions
+// 0, 1, ..., sections.size() - 1: the low subband of the next level. Its sample (x, y) belongs to
+// the pixel (x, y) * 2^n of the tile, where n is the number of resolutions that are left out, and
+// one more for a mosaic, whose pixels are then squares of 2 x 2. Returns false if a section is
+// damaged.
+//   tile_width, tile_height  size of the tile in pixels
+//   pixels  [height][width][1], or [3] for RGB, or [4] for a mosaic: the colours of the square's
+//           upper left, upper right, lower left and lower right pixel. Width and height are those
+//           of the tile, divided by 2^n and rounded up
+template <class Pixel>
+[[nodiscard]] bool DecodeReducedTile(Transform transform, const CodeHead& head,
+                                     std::span<std::string_view> sections, int tile_width,
+                                     int tile_height, ImageView<Pixel> pixels);
+
 }  // namespace lf

@@ -275,6 +275,12 @@ Result<int> ReadReducedJpeg(const fs::path& path, const WantedReduction& wanted,
   return FromFile(path, [&](const FileBytes& file) { return ReducedFrom(file, wanted, part); });
 }
 
+Result<int> ReadReducedJpegBytes(std::string_view bytes, const std::string& name,
+                                 const WantedReduction& wanted, ImagePart* part) {
+  return WithoutThrowing(name,
+                         [&] { return ReducedFrom(FileInMemory(bytes, name), wanted, part); });
+}
+
 Result<void> ReadImagePart(const fs::path& path, const WantedPixels& wanted, ImagePart* part) {
   if (const std::optional<PictureView> view = PictureViewOf(path))
     return ReadViewPart(*view, wanted, part);

@@ -4,6 +4,8 @@
 
 #include <filesystem>
 #include <functional>
+#include <string>
+#include <string_view>
 
 #include "lf/core/result.h"
 #include "lf/pixels/files/image_file.h"
@@ -21,5 +23,8 @@ using WantedReduction = std::function<Result<int>(const ImageFileInfo& info)>;
 // ReadImagePart().
 Result<int> ReadReducedJpeg(const std::filesystem::path& path, const WantedReduction& wanted,
                             ImagePart* part);
+// Reads a file that is in memory; messages call it `name`.
+Result<int> ReadReducedJpegBytes(std::string_view bytes, const std::string& name,
+                                 const WantedReduction& wanted, ImagePart* part);
 
 }  // namespace lf

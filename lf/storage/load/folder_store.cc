@@ -5,15 +5,14 @@
 #include <system_error>
 #include <utility>
 
-#include "lf/camera/resolution.h"
 #include "lf/core/file.h"
 #include "lf/light_field/model/image_files.h"
-#include "lf/light_field/model/image_fit.h"
 #include "lf/pixels/files/picture_view.h"
 #include "lf/pixels/files/reduced_jpeg.h"
 #include "lf/storage/load/image_reading.h"
 #include "lf/storage/load/load_mosaics.h"
 #include "lf/storage/load/opacities.h"
+#include "lf/storage/load/reduced_reading.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -57,29 +56,13 @@ Result<int> FolderStore::LoadReduced(LfImageId id, int divisor, const Intrinsics
 Result<int> FolderStore::LoadReducedBy(Loading* loading, LfImageId id, int divisor,
                                        LfPixels* pixels) const {
   LF_CHECK(id.value < light_field_.size());
-  const RadianceEncoding& encoding = light_field_.encoding;
-  const LfCamera& camera = light_field_.cameras[id.value];
-  const bool has_mask =
-      !light_field_.mask_names.empty() && !light_field_.mask_names[id.value].empty();
+  if (!light_field_.mask_names.empty() && !light_field_.mask_names[id.value].empty()) return 1;
   const fs::path path = light_field_.ImagePath(id);
-  if (divisor % 2 != 0 || has_mask || encoding.masks_clipped || encoding.HasOpacity() ||
-      encoding.bayer != BayerPattern::kNone)
-    return 1;
-  const Intrinsics& k = light_field_.intrinsics[camera.intrinsics_index];
-  const auto wanted = [&](const ImageFileInfo& info) -> Result<int> {
-    LF_ASSIGN_OR_RETURN(const ImageFit fit, FitToCalibration(info, false, k, path.string()));
-    if (fit == ImageFit::kTurned) return 1;
-    return divisor % 8 == 0 ? 8 : divisor % 4 == 0 ? 4 : 2;
+  const auto read = [&path](const WantedReduction& wanted, ImagePart* part) {
+    return ReadReducedJpeg(path, wanted, part);
   };
-  ImagePart& part = loading->part;
-  LF_ASSIGN_OR_RETURN(const int reduction, ReadReducedJpeg(path, wanted, &part));
-  if (reduction == 1) return 1;
-  LF_RETURN_IF_ERROR(CheckLevels(encoding, part.info.bits, path.string()));
-  ConvertColours(encoding, &part);
-  const Intrinsics reduced = WithLargerPixels(k, reduction);
-  pixels->Reset({0, 0, reduced.width_px, reduced.height_px}, BayerPattern::kNone);
-  ConvertRadiance(part, UseOf(part.info).colours, tables_, encoding, camera, reduced, pixels);
-  return reduction;
+  return LoadReducedFile(read, path.string(), light_field_, id, divisor, tables_, &loading->part,
+                         pixels);
 }
 
 Result<void> FolderStore::LoadBy(Loading* loading, LfImageId id, const PixelRect& rect,

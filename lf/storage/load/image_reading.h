@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
+#include <string>
+#include <string_view>
 #include <type_traits>
 #include <variant>
 
@@ -28,9 +30,15 @@ namespace lf {
 Result<ChannelUse> ReadStoredPixels(const LightField& light_field, LfImageId id,
                                     const PixelRect& wanted, ImagePart* part);
 
+// Reads the pixels from the bytes of the LF image's file, as ReadStoredPixels() reads them from the
+// file. Messages call it `name`.
+Result<ChannelUse> ReadStoredPixelsOf(std::string_view bytes, const std::string& name,
+                                      const LightField& light_field, LfImageId id,
+                                      const PixelRect& wanted, ImagePart* part);
+
 // Converts pixels as stored from the colour profile of their file to sRGB (ConvertToSrgb() of
 // pixels/files/colour_profile.h), unless the encoding says that they are mosaics or no sRGB values.
-// ReadStoredPixels() has done so.
+// ReadStoredPixels() and ReadStoredPixelsOf() have done so.
 void ConvertColours(const RadianceEncoding& encoding, ImagePart* part);
 
 // Reads at least the pixels `wanted` of the image's mask file, as ReadStoredPixels() reads the

@@ -4,17 +4,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <variant>
 
+#include "lf/camera/resolution.h"
 #include "lf/core/check.h"
 #include "lf/storage/load/image_reading.h"
 #include "lf/storage/load/load_mosaics.h"
 #include "lf/storage/load/opacities.h"
 #include "lf/storage/load/ordered_half.h"
 #include "lf/storage/load/recorded_image.h"
+#include "lf/storage/load/reduced_reading.h"
 
 namespace lf {
 namespace {
@@ -64,6 +67,29 @@ Result<void> CheckCode(std::string_view bytes, int bits, PixelLayout layout, boo
         "is damaged in the packed store: its encoded image has another number of bits or channels "
         "than the table of the store says; copy or make the store again");
   return {};
+}
+
+// Makes pixels R, G, B of the four colours of a reduced mosaic (DecodeReduced()).
+void ColoursOfMosaic(BayerPattern bayer, CodecPixels* pixels) {
+  std::visit(
+      [&]<class Pixel>(Image<Pixel>& mosaic) {
+        Image<Pixel> rgb(mosaic.width(), mosaic.height(), 3);
+        for (int y = 0; y < rgb.height(); ++y)
+          for (int x = 0; x < rgb.width(); ++x) {
+            uint32_t greens = 1;  // rounds half of the sum of two greens
+            for (int i = 0; i < 4; ++i) {
+              const Pixel value = mosaic.at(x, y, i);
+              const int channel = BayerChannel(bayer, i % 2, i / 2);
+              if (channel == 1)
+                greens += value;
+              else
+                rgb.at(x, y, channel) = value;
+            }
+            rgb.at(x, y, 1) = static_cast<Pixel>(greens / 2);
+          }
+        mosaic = std::move(rgb);
+      },
+      *pixels);
 }
 
 // Moves the decoded pixels, together with their memory, into `part`, and converts kDisplay16 to
@@ -155,6 +181,86 @@ Result<void> PackedStore::Load(LfImageId id, const PixelRect& rect, LfPixels* pi
   return loaded;
 }
 
+Result<int> PackedStore::LoadReduced(LfImageId id, int divisor, const Intrinsics& k,
+                                     LfPixels* pixels) const {
+  LF_CHECK(id.value < light_field_.size());
+  LF_RETURN_IF_ERROR(CheckListed(codes_[id.value], light_field_, id));
+  LF_ASSIGN_OR_RETURN(std::unique_ptr<Loading> loading, TakeLoading());
+  const Result<int> reduced = LoadReducedBy(loading.get(), id, divisor, pixels);
+  GiveBack(std::move(loading));
+  if (!reduced || *reduced > 1) return reduced;
+  return LfImageStore::LoadReduced(id, divisor, k, pixels);
+}
+
+// Returns 1, without loading pixels, if the LF image cannot be reduced.
+Result<int> PackedStore::LoadReducedBy(Loading* loading, LfImageId id, int divisor,
+                                       LfPixels* pixels) const {
+  const PackedCode& code = codes_[id.value];
+  const LfCamera& camera = light_field_.cameras[id.value];
+  const Intrinsics& k = light_field_.intrinsics[camera.intrinsics_index];
+  const bool is_mosaic = light_field_.encoding.bayer != BayerPattern::kNone;
+  // Means of ordered half floats are far from those of light beside edges.
+  if (divisor % 2 != 0 || densified_ || light_field_.encoding.HasOpacity() ||
+      code.values == StoredValues::kHalf || (is_mosaic && mosaics_ == Mosaics::kAsRecorded) ||
+      code.rect != PixelRect{0, 0, k.width_px, k.height_px})
+    return 1;
+  const std::string name = light_field_.ImagePath(id).string();
+  const auto named = [&name](const Error& error) {
+    return Error{error.kind, fmt::format("{}: {}", name, error.message)};
+  };
+  if (code.values == StoredValues::kFile) {
+    const auto bytes = loading->reader.Read(code);
+    if (!bytes) return named(bytes.error());
+    if (!bytes->mask.empty()) return 1;
+    const auto read = [&](const WantedReduction& wanted, ImagePart* part) {
+      return ReadReducedJpegBytes(bytes->code, name, wanted, part);
+    };
+    return LoadReducedFile(read, name, light_field_, id, divisor, tables_, &loading->part, pixels);
+  }
+  const int bits = code.values == StoredValues::kUint8 ? 8 : 16;
+  LF_RETURN_IF_ERROR(CheckLevels(light_field_.encoding, bits, name));
+  // The first level of a mosaic halves it already, so that fewer fronts are left out.
+  const int wanted = std::countr_zero(static_cast<unsigned>(divisor));
+  const int left_out = is_mosaic ? wanted - 1 : wanted;
+  if (left_out == 0) return 1;
+  const auto front = loading->reader.ReadFront(code, static_cast<size_t>(left_out));
+  if (!front) return named(front.error());
+  if (!*front) return 1;
+  const PixelLayout layout = is_mosaic ? PixelLayout::kMosaic : PixelLayout::kRgb;
+  const std::string_view bytes = (*front)->code;
+  if (const auto ok = CheckCode(bytes, bits, layout, !is_mosaic, code.rect); !ok)
+    return named(ok.error());
+  const int left_out_here = static_cast<int>((*front)->left_out) + (is_mosaic ? 1 : 0);
+  const int reduction = std::min(1 << left_out_here, LargestReduction(*ReadCodeInfo(bytes)));
+  if (reduction == 1) return 1;
+  if (const auto ok = DecodeReduced(bytes, reduction, &loading->decoded.pixels); !ok)
+    return named(ok.error());
+  const Intrinsics reduced = WithLargerPixels(k, reduction);
+  loading->decoded.rect = {0, 0, reduced.width_px, reduced.height_px};
+  RadianceEncoding encoding = light_field_.encoding;
+  if (is_mosaic) {
+    ColoursOfMosaic(encoding.bayer, &loading->decoded.pixels);
+    encoding.bayer = BayerPattern::kNone;
+  }
+  pixels->Reset(loading->decoded.rect, BayerPattern::kNone);
+  Convert(loading, code.values, {}, encoding, camera, reduced, pixels);
+  return reduction;
+}
+
+// Converts the decoded values to the radiance of pixels->rect.
+//   coded     pixels of the LF image that are encoded
+//   encoding  of the values: without a Bayer pattern if they are RGB made of a mosaic
+//   k         intrinsics of the pixels, for the falloff
+void PackedStore::Convert(Loading* loading, StoredValues values, const PixelRect& coded,
+                          const RadianceEncoding& encoding, const LfCamera& camera,
+                          const Intrinsics& k, LfPixels* pixels) const {
+  MakePart(values, coded, curve_, &loading->decoded, &loading->floats, &loading->part);
+  const int channels =
+      std::visit([](const auto& image) { return image.channels(); }, loading->part.image);
+  ConvertRadiance(loading->part, channels, tables_, encoding, camera, k, pixels);
+  TakeBack(&loading->part, &loading->decoded, &loading->floats);
+}
+
 Result<PackedPlaneReader*> PackedStore::PlanesOf(Loading* loading) const {
   if (!loading->planes) {
     LF_ASSIGN_OR_RETURN(loading->planes, PackedPlaneReader::Open(light_field_.folder));
@@ -208,24 +314,29 @@ Result<void> PackedStore::LoadRecorded(Loading* loading, LfImageId id, const Pix
                     "make the store again with lfcompressor from all packages that are rendered",
                     name, TextOf(inside), TextOf(code.rect)));
   const int bits = code.values == StoredValues::kUint8 ? 8 : 16;
-  if (code.values != StoredValues::kHalf) LF_RETURN_IF_ERROR(CheckLevels(encoding, bits, name));
+  const bool is_file = code.values == StoredValues::kFile;
+  if (!is_file && code.values != StoredValues::kHalf)
+    LF_RETURN_IF_ERROR(CheckLevels(encoding, bits, name));
   const auto bytes = loading->reader.Read(code);
   if (!bytes) return named(bytes.error());
   const bool is_mosaic = encoding.bayer != BayerPattern::kNone;
   const PixelLayout layout = is_mosaic ? PixelLayout::kMosaic : PixelLayout::kRgb;
-  if (const auto ok = CheckCode(bytes->code, bits, layout, !is_mosaic, code.rect); !ok)
-    return named(ok.error());
+  if (!is_file)
+    if (const auto ok = CheckCode(bytes->code, bits, layout, !is_mosaic, code.rect); !ok)
+      return named(ok.error());
   pixels->Reset(inside, encoding.bayer);
   if (inside.empty()) return {};
 
   const PixelRect wanted = Moved(inside, -code.rect.x_begin, -code.rect.y_begin);
-  if (const auto ok = DecodeImage(bytes->code, wanted, &loading->decoded); !ok)
-    return named(ok.error());
-  MakePart(code.values, code.rect, curve_, &loading->decoded, &loading->floats, &loading->part);
-  const int channels =
-      std::visit([](const auto& image) { return image.channels(); }, loading->part.image);
-  ConvertRadiance(loading->part, channels, tables_, encoding, camera, k, pixels);
-  TakeBack(&loading->part, &loading->decoded, &loading->floats);
+  if (is_file) {
+    LF_ASSIGN_OR_RETURN(const ChannelUse use, ReadStoredPixelsOf(bytes->code, name, light_field_,
+                                                                 id, inside, &loading->part));
+    ConvertRadiance(loading->part, use.colours, tables_, encoding, camera, k, pixels);
+  } else {
+    if (const auto ok = DecodeImage(bytes->code, wanted, &loading->decoded); !ok)
+      return named(ok.error());
+    Convert(loading, code.values, code.rect, encoding, camera, k, pixels);
+  }
 
   if (bytes->mask.empty()) {
     if (encoding.HasOpacity()) SetOpaque(pixels);

@@ -37,6 +37,13 @@ class PackedStore : public LfImageStore {
   // image: the image is not in the store, the pixels lie beyond those that were encoded, or the
   // store is damaged.
   Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override;
+  // Reduces by the largest power of two that divides `divisor` and that the encoded image can be
+  // reduced by, and reads and decodes only the front of the encoded image. A mosaic that is loaded
+  // as RGB is reduced as well. Image files are reduced as FolderStore reduces them. Loads a whole
+  // LF image if it has masks or opacities, depths, floats or the profile kThesis, and if a store of
+  // an earlier build has no fronts.
+  Result<int> LoadReduced(LfImageId id, int divisor, const Intrinsics& k,
+                          LfPixels* pixels) const override;
   bool LoadsDepths() const override { return densified_.has_value(); }
   bool IsPartial() const override;
   // As PackedCode::Keeps(). If a mosaic is loaded as RGB, the pixels beside `rect` from which its
@@ -63,6 +70,10 @@ class PackedStore : public LfImageStore {
   PackedStore(const LightField& light_field, Mosaics mosaics, std::vector<PackedCode> codes);
   Result<void> LoadRecorded(Loading* loading, LfImageId id, const PixelRect& rect,
                             LfPixels* pixels) const;
+  void Convert(Loading* loading, StoredValues values, const PixelRect& coded,
+               const RadianceEncoding& encoding, const LfCamera& camera, const Intrinsics& k,
+               LfPixels* pixels) const;
+  Result<int> LoadReducedBy(Loading* loading, LfImageId id, int divisor, LfPixels* pixels) const;
   Result<void> LoadDepths(Loading* loading, LfImageId id, LfDepths* depths) const;
   Result<void> LoadTrust(Loading* loading, LfImageId id, LfPixels* pixels) const;
   Result<PackedPlaneReader*> PlanesOf(Loading* loading) const;

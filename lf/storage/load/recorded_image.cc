@@ -12,7 +12,9 @@
 #include <variant>
 
 #include "lf/camera/vignetting.h"
+#include "lf/core/file.h"
 #include "lf/light_field/model/image_files.h"
+#include "lf/pixels/files/picture_view.h"
 #include "lf/storage/load/demosaic.h"
 #include "lf/storage/load/image_reading.h"
 #include "lf/storage/load/opacities.h"
@@ -116,6 +118,20 @@ uint64_t SizeOf(const fs::path& path) {
   return error ? 0 : size;
 }
 
+// Returns everything of an encoded image but the pixels.
+CodedImage MaskOf(const RecordedImage& image) {
+  CodedImage coded;
+  coded.values = image.values;
+  coded.rect = image.rect;
+  CodecSettings settings;
+  settings.profile = CodecProfile::kLossless;
+  if (!image.mask.empty()) coded.mask = EncodeImage(image.mask, PixelLayout::kGrey, settings);
+  if (!image.opacities.empty())
+    coded.mask = EncodeImage(image.opacities, PixelLayout::kGrey, settings);
+  coded.source_bytes = image.source_bytes;
+  return coded;
+}
+
 }  // namespace
 
 Result<RecordedImage> ReadRecordedImage(const LightField& light_field, LfImageId id,
@@ -163,18 +179,32 @@ PixelRect RectToRecord(const LightField& light_field, LfImageId id, const PixelR
   return MosaicRectOf(inside, whole.width(), whole.height());
 }
 
+Result<std::optional<CodedImage>> FileAsCode(const LightField& light_field, LfImageId id,
+                                             const RecordedImage& image) {
+  const fs::path path = light_field.ImagePath(id);
+  if (image.rect != WholeOf(light_field, id) || PictureViewOf(path))
+    return std::optional<CodedImage>();
+  CodedImage coded = MaskOf(image);
+  coded.values = StoredValues::kFile;
+  LF_ASSIGN_OR_RETURN(coded.code, ReadFile(path));
+  return std::optional(std::move(coded));
+}
+
+CodedImage SmallerOf(CodedImage code, std::optional<CodedImage> file) {
+  return file && file->code.size() <= code.code.size() ? *std::move(file) : std::move(code);
+}
+
 CodedImage CodeOf(const RecordedImage& image, const CodecSettings& settings) {
-  CodedImage coded;
-  coded.values = image.values;
-  coded.rect = image.rect;
+  CodedImage coded = MaskOf(image);
   coded.code = EncodeImage(image.pixels, image.layout, settings);
-  CodecSettings of_mask;
-  of_mask.profile = CodecProfile::kLossless;
-  if (!image.mask.empty()) coded.mask = EncodeImage(image.mask, PixelLayout::kGrey, of_mask);
-  if (!image.opacities.empty())
-    coded.mask = EncodeImage(image.opacities, PixelLayout::kGrey, of_mask);
-  coded.source_bytes = image.source_bytes;
+  if (coded.mask.empty()) coded.front_ends = *FrontEndsOf(coded.code);
   return coded;
+}
+
+Result<std::vector<uint64_t>> FrontEndsOf(std::string_view code) {
+  LF_ASSIGN_OR_RETURN(std::vector<uint64_t> ends, ResolutionEnds(code));
+  ends.pop_back();
+  return ends;
 }
 
 uint64_t SourceBytesOf(const LightField& light_field, LfImageId id) {

@@ -5,6 +5,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
 
 #include "lf/core/geometry.h"
 #include "lf/core/ids.h"
@@ -57,5 +60,19 @@ PixelRect RectToRecord(const LightField& light_field, LfImageId id, const PixelR
 
 // Encodes the pixels by `settings`, and the mask or the opacities losslessly.
 CodedImage CodeOf(const RecordedImage& image, const CodecSettings& settings);
+
+// Returns the bytes of the LF image's file as its encoded image, with the encoded mask or
+// opacities. nullopt if `image` has only a part of the pixels, or the LF image is a view of a
+// larger picture. kInput: the file cannot be read.
+Result<std::optional<CodedImage>> FileAsCode(const LightField& light_field, LfImageId id,
+                                             const RecordedImage& image);
+
+// Returns the file if there is one and it is at most as large as the encoded image; otherwise the
+// encoded image.
+CodedImage SmallerOf(CodedImage code, std::optional<CodedImage> file);
+
+// Returns CodedImage::front_ends for an encoded image without a mask: those of all its resolutions
+// but the finest. Errors are those of ResolutionEnds().
+Result<std::vector<uint64_t>> FrontEndsOf(std::string_view code);
 
 }  // namespace lf

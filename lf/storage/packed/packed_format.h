@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "lf/light_field/model/light_field.h"
 #include "lf/light_field/model/light_field_identity.h"
@@ -36,6 +37,10 @@ create table codes (id integer primary key, shard integer, kind text, x_begin in
 // Table of the encoded images, in the file of the store or in its shards.
 inline constexpr const char* kBlobsTable =
     "create table blobs (id integer primary key, code blob not null, mask blob);";
+// Table of their fronts (code_fronts.h), in the same file. Stores of earlier builds lack it.
+inline constexpr const char* kFrontsTable =
+    "create table fronts (id integer primary key, fronts blob not null);";
+inline constexpr const char* kFrontsName = "fronts";
 
 // Further tables of a densified store.
 inline constexpr const char* kDensifiedTables = R"(
@@ -53,13 +58,16 @@ inline constexpr const char* kDensifiedKey = "densified";
 // has shards.
 inline Result<Database> OpenStoreDatabase(const std::filesystem::path& path) {
   const std::string tables = fmt::format("{}{}{}", kSettingsTable, kIntrinsicsTable, kStoreTables);
-  return Database::Open(
-      path, kStoreFormat,
-      {tables + kBlobsTable, tables, tables + kBlobsTable + kDensifiedTables,
-       tables + kDensifiedTables, tables + kBlobsTable + kLeftOutTable, tables + kLeftOutTable});
+  const std::string blobs = kBlobsTable;
+  std::vector<std::string> scripts;
+  for (const std::string& of_images : {blobs + kFrontsTable, std::string(), blobs})
+    for (const char* const further : {"", kDensifiedTables, kLeftOutTable})
+      scripts.push_back(tables + of_images + further);
+  return Database::Open(path, kStoreFormat, scripts);
 }
 inline Result<Database> OpenShardDatabase(const std::filesystem::path& path) {
-  return Database::Open(path, kShardFormat, {fmt::format("{}{}", kSettingsTable, kBlobsTable)});
+  const std::string tables = fmt::format("{}{}", kSettingsTable, kBlobsTable);
+  return Database::Open(path, kShardFormat, {tables + kFrontsTable, tables});
 }
 
 // The file of a complete packed store, and its settings.
@@ -72,7 +80,7 @@ Result<OpenedStore> OpenComplete(const std::filesystem::path& path);
 
 // Name of each StoredValues in the column `kind` of the table `codes`, in the order of the
 // enumeration.
-inline constexpr const char* kKindNames[] = {"uint8", "uint16", "half", "display16"};
+inline constexpr const char* kKindNames[] = {"uint8", "uint16", "half", "display16", "file"};
 
 inline constexpr const char* kComplete = "complete";
 inline constexpr const char* kUnfinished = "unfinished";

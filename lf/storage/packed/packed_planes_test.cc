@@ -221,7 +221,7 @@ TEST_F(PackedPlanesTest, AStoreMayBeDensifiedByNoVirtualImage) {
 // Programs that know no densified stores accept only the tables of ordinary ones.
 TEST_F(PackedPlanesTest, OnlyADensifiedStoreHasFurtherTables) {
   const std::string ordinary =
-      std::string(kSettingsTable) + kIntrinsicsTable + kStoreTables + kBlobsTable;
+      std::string(kSettingsTable) + kIntrinsicsTable + kStoreTables + kBlobsTable + kFrontsTable;
   Finish(Writer());
   const auto refused = Database::Open(path_, kStoreFormat, {ordinary});
   ASSERT_FALSE(refused);

@@ -10,7 +10,10 @@
 #include <system_error>
 #include <utility>
 
+#include "lf/core/check.h"
+#include "lf/core/hash.h"
 #include "lf/light_field/model/value_hasher.h"
+#include "lf/storage/packed/code_fronts.h"
 #include "lf/storage/packed/packed_format.h"
 #include "lf/storage/packed/plane_table.h"
 #include "lf/storage/tables/calibration_tables.h"
@@ -151,17 +154,23 @@ Result<std::vector<PackedCode>> ReadCodes(OpenedStore* store) {
 }
 
 // An open file with the table of encoded images (a shard, or a store without shards), and the SQL
-// command that reads one encoded image.
+// commands that read one encoded image and its fronts.
 struct OpenBlobs {
   int shard = 0;
   Database database;
   Statement select;
+  std::optional<Statement> select_fronts;  // nullopt if an earlier build made the file
 };
 
 Result<OpenBlobs> WithSelect(int shard, Database database) {
   LF_ASSIGN_OR_RETURN(Statement select,
                       database.Prepare("select code, mask from blobs where id = ?"));
-  return OpenBlobs{shard, std::move(database), std::move(select)};
+  std::optional<Statement> fronts;
+  LF_ASSIGN_OR_RETURN(const bool has_fronts, HasTable(&database, kFrontsName));
+  if (has_fronts) {
+    LF_ASSIGN_OR_RETURN(fronts, database.Prepare("select fronts from fronts where id = ?"));
+  }
+  return OpenBlobs{shard, std::move(database), std::move(select), std::move(fronts)};
 }
 
 }  // namespace
@@ -312,9 +321,11 @@ struct PackedCodeReader::State {
   int shard_count = 0;
   std::deque<OpenBlobs> open;  // open files, the most recently opened at the end
   Statement* last = nullptr;   // SQL command whose row Read() returned; null: none
+  std::string front;           // bytes that ReadFront() returned
 
   Result<OpenBlobs> OpenShard(int number) const;
   Result<OpenBlobs*> At(int shard);
+  Result<OpenBlobs*> FileOf(const PackedCode& code);
 };
 
 Result<OpenBlobs> PackedCodeReader::State::OpenShard(int number) const {
@@ -351,14 +362,45 @@ Result<PackedCodeReader> PackedCodeReader::Open(const fs::path& path) {
   return PackedCodeReader(std::move(state));
 }
 
-Result<PackedCodeReader::Bytes> PackedCodeReader::Read(const PackedCode& code) {
-  if (state_->last) state_->last->Reset();
-  state_->last = nullptr;
-  if (state_->shard_count > 0 ? code.shard == 0 : code.shard != 0)
+Result<OpenBlobs*> PackedCodeReader::State::FileOf(const PackedCode& code) {
+  // An open file is closed when others are opened, and its SQL command must end before.
+  if (last) last->Reset();
+  last = nullptr;
+  if (shard_count > 0 ? code.shard == 0 : code.shard != 0)
     return InputError(
         fmt::format("{}: is a damaged {}: no shard contains LF image {}; copy or make it again",
-                    state_->path.string(), kStoreFormat.name, code.id));
-  LF_ASSIGN_OR_RETURN(OpenBlobs* const blobs, state_->At(code.shard));
+                    path.string(), kStoreFormat.name, code.id));
+  return At(code.shard);
+}
+
+Result<std::optional<PackedCodeReader::Front>> PackedCodeReader::ReadFront(const PackedCode& code,
+                                                                           size_t left_out) {
+  LF_CHECK(left_out > 0);
+  LF_ASSIGN_OR_RETURN(OpenBlobs* const blobs, state_->FileOf(code));
+  if (!blobs->select_fronts) return std::optional<Front>();
+  Statement& select = *blobs->select_fronts;
+  select.Bind(0, int64_t{code.id});
+  LF_ASSIGN_OR_RETURN(const bool has_row, select.Step());
+  if (!has_row) return std::optional<Front>();
+  LF_ASSIGN_OR_RETURN(const std::string_view stated, select.Blob(0));
+  const std::optional<std::vector<CodeFront>> fronts = FrontsOfCode(stated, code.bytes);
+  select.Reset();
+  const auto damaged = [&](std::string_view fault) {
+    return blobs->database.Fault(
+        fmt::format("is damaged: {} of LF image {}; copy or make it again", fault, code.id));
+  };
+  if (!fronts) return damaged("it states impossible lengths for the front");
+  if (fronts->empty()) return std::optional<Front>();
+  const size_t index = fronts->size() - std::min(left_out, fronts->size());
+  LF_RETURN_IF_ERROR(
+      blobs->database.ReadFront("blobs", "code", code.id, (*fronts)[index].bytes, &state_->front));
+  if (HashBytes(state_->front) != (*fronts)[index].hash)
+    return damaged("a wrong checksum in the encoded image");
+  return std::optional<Front>({state_->front, fronts->size() - index});
+}
+
+Result<PackedCodeReader::Bytes> PackedCodeReader::Read(const PackedCode& code) {
+  LF_ASSIGN_OR_RETURN(OpenBlobs* const blobs, state_->FileOf(code));
   Statement& select = blobs->select;
   select.Bind(0, int64_t{code.id});
   LF_ASSIGN_OR_RETURN(const bool has_row, select.Step());

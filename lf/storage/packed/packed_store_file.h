@@ -31,6 +31,7 @@ enum class StoredValues : uint8_t {
                    // (storage/load/ordered_half.h)
   kDisplay16 = 3,  // 16-bit values of the image file, mapped to a tone curve
                    // (ReadDisplayLevels(), storage/load/display_curve.h)
+  kFile = 4,       // no numbers: the encoded image is the image file itself, byte by byte
 };
 
 inline constexpr const char* kStoreExtension = ".lfs";
@@ -152,6 +153,15 @@ class PackedCodeReader {
   // kInput, naming the file: the checksum shows damage, or a shard is missing or belongs to another
   // store.
   Result<Bytes> Read(const PackedCode& code);
+
+  struct Front {
+    std::string_view code;  // the first bytes of the encoded image
+    size_t left_out = 0;    // number of longer fronts; the whole image counts as one of them
+  };
+  // Reads the first bytes of an encoded image without the rest: its longest front but the last
+  // `left_out`, which is at least 1, or its shortest front. nullopt: the store has no fronts of the
+  // image. The bytes are valid until the next call of this function. kInput as Read().
+  Result<std::optional<Front>> ReadFront(const PackedCode& code, size_t left_out);
 
  private:
   struct State;

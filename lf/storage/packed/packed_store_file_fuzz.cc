@@ -44,6 +44,9 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size_bytes) {
       if (code.bytes == 0) continue;
       const auto bytes = reader->Read(code);
       LF_CHECK(bytes || !bytes.error().message.empty());
+      const auto front = reader->ReadFront(code, 1);
+      LF_CHECK(front || !front.error().message.empty());
+      LF_CHECK(!front || !*front || (*front)->code.size() <= code.bytes);
     }
   if (auto planes = lf::PackedPlaneReader::Open(path))
     for (uint32_t i = 0; i < 4; ++i)

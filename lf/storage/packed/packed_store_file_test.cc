@@ -15,6 +15,7 @@
 #include "lf/camera/testing_scenes.h"
 #include "lf/core/file.h"
 #include "lf/core/random.h"
+#include "lf/storage/packed/code_fronts.h"
 #include "lf/storage/packed/packed_format.h"
 #include "lf/storage/packed/packed_store_writer.h"
 #include "lf/storage/sqlite/database.h"
@@ -53,6 +54,7 @@ CodedImage CodeOfImage(uint32_t i) {
   image.rect = {static_cast<int>(i), 2, 60 + static_cast<int>(i), 41};
   for (uint64_t k = 0; k < 2000 + 10 * i; ++k) image.code += static_cast<char>(RandomBits(4, i, k));
   if (i % 4 == 1) image.mask = "mask of " + std::to_string(i);
+  if (i % 4 == 3) image.front_ends = {100, 300 + i, 1900};
   image.source_bytes = 1000000000000ULL + i;
   return image;
 }
@@ -98,6 +100,17 @@ class PackedStoreFileTest : public ::testing::Test {
     ASSERT_TRUE(bytes) << bytes.error().message;
     EXPECT_EQ(bytes->code, expected.code);
     EXPECT_EQ(bytes->mask, expected.mask);
+    // Asked for 1, 2, 3, 4 fronts less, it has the longest first, and the shortest twice.
+    std::vector<uint64_t> ends = expected.front_ends;
+    if (!has_fronts_) ends.clear();
+    for (size_t left_out = 1; left_out <= 4; ++left_out) {
+      const auto front = reader->ReadFront(code, left_out);
+      ASSERT_TRUE(front) << front.error().message;
+      ASSERT_EQ(front->has_value(), !ends.empty());
+      if (ends.empty()) continue;
+      EXPECT_EQ((*front)->left_out, std::min<size_t>(left_out, 3));
+      EXPECT_EQ((*front)->code, expected.code.substr(0, ends[ends.size() - (*front)->left_out]));
+    }
   }
   void ExpectHoldsAll() {
     const auto codes = FindCodes(path_, field_.image_names);
@@ -123,6 +136,7 @@ class PackedStoreFileTest : public ::testing::Test {
   fs::path folder_, path_;
   LightField field_;
   PackedStorePlan plan_;
+  bool has_fronts_ = true;  // false if the store lacks the fronts of its images
 };
 
 TEST_F(PackedStoreFileTest, ReadsWhatWasWrittenToTheBit) {
@@ -311,6 +325,58 @@ TEST_F(PackedStoreFileTest, AnImpossibleEntryOfAnUnfinishedStoreIsAnError) {
     ASSERT_TRUE(WriteFileAtomically(unfinished, before));
   }
   EXPECT_TRUE(PackedStoreWriter::Resume(path_, field_, plan_));
+}
+
+// Earlier builds wrote no fronts. An unfinished store of theirs gets the table when it is resumed.
+TEST_F(PackedStoreFileTest, StoresWithoutFrontsAreRead) {
+  Write();
+  const auto drop_fronts = [&](const fs::path& path) {
+    Database database = Database::OpenToAppend(path, kStoreFormat).value();
+    ASSERT_TRUE(database.Execute("drop table fronts"));
+  };
+  drop_fronts(path_);
+  has_fronts_ = false;
+  ExpectHoldsAll();
+  fs::remove(path_);
+  {
+    PackedStoreWriter writer = Writer();
+    ASSERT_TRUE(writer.Add({0}, CodeOfImage(0)));
+    ASSERT_TRUE(writer.Commit());
+  }
+  drop_fronts(UnfinishedPath(path_));
+  {
+    PackedStoreWriter writer = PackedStoreWriter::Resume(path_, field_, plan_).value();
+    for (uint32_t i = 1; i < field_.size(); ++i) ASSERT_TRUE(writer.Add({i}, CodeOfImage(i)));
+    ASSERT_TRUE(writer.Finish());
+  }
+  has_fronts_ = true;
+  ExpectHoldsAll();
+}
+
+// The checksum of a front, and its length, must fit its bytes.
+TEST_F(PackedStoreFileTest, DamagedFrontsAreErrors) {
+  Write();
+  const auto message_for = [&](const std::string& fronts) {
+    {
+      Database database = Database::OpenToAppend(path_, kStoreFormat).value();
+      Statement update = database.Prepare("update fronts set fronts = ? where id = 7").value();
+      EXPECT_TRUE(update.BindBlob(0, fronts).Run());
+    }
+    PackedCodeReader reader = PackedCodeReader::Open(path_).value();
+    const auto front = reader.ReadFront((*FindCodes(path_, field_.image_names))[7], 1);
+    return front ? "" : front.error().message;
+  };
+  const std::string code = CodeOfImage(7).code;
+  const std::vector<uint64_t> ends = {500};
+  EXPECT_EQ(message_for(CodeOfFronts(code, ends)), "");
+  std::string other = code;
+  other[3] ^= 1;
+  EXPECT_NE(message_for(CodeOfFronts(other, ends)).find("checksum"), std::string::npos);
+  EXPECT_NE(message_for("1234").find("impossible lengths"), std::string::npos);
+  EXPECT_NE(message_for(CodeOfFronts(code, std::vector<uint64_t>{500, 400})).find("impossible"),
+            std::string::npos);
+  EXPECT_NE(message_for(CodeOfFronts(code + code, std::vector<uint64_t>{3000})).find("impossible"),
+            std::string::npos);
 }
 
 TEST_F(PackedStoreFileTest, OneWriterAtATime) {

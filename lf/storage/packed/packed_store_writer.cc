@@ -14,6 +14,7 @@
 #include "lf/core/check.h"
 #include "lf/core/file.h"
 #include "lf/core/file_lock.h"
+#include "lf/storage/packed/code_fronts.h"
 #include "lf/storage/packed/packed_format.h"
 #include "lf/storage/packed/plan_settings.h"
 #include "lf/storage/packed/plane_table.h"
@@ -54,6 +55,7 @@ struct PackedStoreWriter::State {
   uint64_t bytes_in_shard = 0;
   std::optional<Database> shard;  // the last shard, to which images are added
   std::optional<Statement> insert_blob;
+  std::optional<Statement> insert_fronts;  // set if insert_blob is
   size_t batch_size = 0;
   std::chrono::steady_clock::time_point batch_begin;
   std::optional<Error> failed;
@@ -65,6 +67,7 @@ struct PackedStoreWriter::State {
   }
   void Close() {
     insert_blob.reset();
+    insert_fronts.reset();
     shard.reset();
     insert_code.reset();
     planes.reset();
@@ -76,6 +79,7 @@ struct PackedStoreWriter::State {
   Result<void> CheckIsFree(const fs::path& shard_path) const;
   Result<void> OpenShard(int number);
   Result<void> BeginInBatch();
+  Result<void> PrepareFronts();
   Result<void> Insert(LfImageId id, const CodedImage& image);
   Result<void> AddPlane(LfImageId id, PlaneKind kind, PlaneSize size, std::string_view code);
   Result<void> CommitIfDue();
@@ -148,6 +152,7 @@ Result<void> PackedStoreWriter::State::OpenShard(int number) {
                     "larger {{shard_size}}",
                     path.string(), kMostShards));
   insert_blob.reset();
+  insert_fronts.reset();
   shard.reset();
   const fs::path shard_path = ShardPath(path, number);
   LF_RETURN_IF_ERROR(CheckIsFree(shard_path));
@@ -155,7 +160,8 @@ Result<void> PackedStoreWriter::State::OpenShard(int number) {
                       Database::OpenToAppend(UnfinishedPath(shard_path), kShardFormat));
   LF_ASSIGN_OR_RETURN(const bool has_tables, HasTables(&opened));
   if (!has_tables) {
-    LF_RETURN_IF_ERROR(opened.Execute(fmt::format("begin; {}{}", kSettingsTable, kBlobsTable)));
+    LF_RETURN_IF_ERROR(
+        opened.Execute(fmt::format("begin; {}{}{}", kSettingsTable, kBlobsTable, kFrontsTable)));
     LF_RETURN_IF_ERROR(
         WriteSettings({{"store", store}, {"number", fmt::format("{}", number)}}, &opened));
     LF_RETURN_IF_ERROR(opened.Execute("commit"));
@@ -179,6 +185,16 @@ Result<void> PackedStoreWriter::State::BeginInBatch() {
   return {};
 }
 
+// Prepares the SQL command that inserts fronts. An unfinished file of an earlier build gets their
+// table.
+Result<void> PackedStoreWriter::State::PrepareFronts() {
+  Database* const file = shard ? &*shard : &*database;
+  LF_ASSIGN_OR_RETURN(const bool has_fronts, HasTable(file, kFrontsName));
+  if (!has_fronts) LF_RETURN_IF_ERROR(file->Execute(kFrontsTable));
+  LF_ASSIGN_OR_RETURN(insert_fronts, file->Prepare("insert or replace into fronts values (?, ?)"));
+  return {};
+}
+
 Result<void> PackedStoreWriter::State::Insert(LfImageId id, const CodedImage& image) {
   const uint64_t bytes = image.code.size() + image.mask.size();
   if (shard_bytes > 0 &&
@@ -189,12 +205,13 @@ Result<void> PackedStoreWriter::State::Insert(LfImageId id, const CodedImage& im
   }
   LF_RETURN_IF_ERROR(BeginInBatch());
   if (!insert_blob) {
-    // Uses "or replace", because the row may exist: an earlier program may have committed it to a
+    // Uses "or replace", because the rows may exist: an earlier program may have committed it to a
     // shard, and ended before it committed the row of the table `codes` to the store.
     LF_ASSIGN_OR_RETURN(Statement prepared, (shard ? *shard : *database)
                                                 .Prepare("insert or replace into blobs values "
                                                          "(?, ?, ?)"));
     insert_blob = std::move(prepared);
+    LF_RETURN_IF_ERROR(PrepareFronts());
   }
   insert_blob->Bind(0, int64_t{id.value}).BindBlob(1, image.code);
   if (image.mask.empty())
@@ -202,6 +219,12 @@ Result<void> PackedStoreWriter::State::Insert(LfImageId id, const CodedImage& im
   else
     insert_blob->BindBlob(2, image.mask);
   LF_RETURN_IF_ERROR(insert_blob->Run());
+  if (!image.front_ends.empty()) {
+    LF_CHECK(image.mask.empty());
+    insert_fronts->Bind(0, int64_t{id.value});
+    insert_fronts->BindBlob(1, CodeOfFronts(image.code, image.front_ends));
+    LF_RETURN_IF_ERROR(insert_fronts->Run());
+  }
   insert_code->Bind(0, int64_t{id.value}).Bind(1, int64_t{shard ? shard_count : 0});
   insert_code->Bind(2, std::string_view(kKindNames[static_cast<int>(image.values)]));
   insert_code->Bind(3, int64_t{image.rect.x_begin}).Bind(4, int64_t{image.rect.y_begin});

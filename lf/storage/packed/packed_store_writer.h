@@ -53,6 +53,9 @@ struct CodedImage {
   std::string mask;  // encoded grey picture of the size of `rect`: a mask if it has 8 bits (0 is
                      // masked), opacities if it has 16 (storage/load/recorded_image.h); empty: none
   uint64_t source_bytes = 0;  // size of the files that the LF image was read from, for information
+  // Ends of the fronts of `code` that PackedCodeReader::ReadFront() can read, ascending. Empty if
+  // there is a mask, because a smaller picture would need a smaller mask.
+  std::vector<uint64_t> front_ends = {};
 };
 
 // Writes a packed store. Until Finish() its file is STORE.lfs.unfinished, which no reader accepts

@@ -84,9 +84,9 @@ Result<void> CheckPlan(const LightField& light_field, const PackedStorePlan& pla
 Result<void> MakeStoreTables(const LightField& light_field, const PackedStorePlan& plan,
                              Database* database) {
   LF_RETURN_IF_ERROR(database->Execute(
-      fmt::format("begin; {}{}{}{}{}{}", kSettingsTable, kIntrinsicsTable, kStoreTables,
-                  plan.shard_bytes > 0 ? "" : kBlobsTable, plan.densified ? kDensifiedTables : "",
-                  plan.LeavesOut() ? kLeftOutTable : "")));
+      fmt::format("begin; {}{}{}{}{}{}{}", kSettingsTable, kIntrinsicsTable, kStoreTables,
+                  plan.shard_bytes > 0 ? "" : kBlobsTable, plan.shard_bytes > 0 ? "" : kFrontsTable,
+                  plan.densified ? kDensifiedTables : "", plan.LeavesOut() ? kLeftOutTable : "")));
   LF_RETURN_IF_ERROR(WriteSettings({{"written_by", "lfrendertools " + plan.version},
                                     {"light_field", plan.source},
                                     {"state", kUnfinished},

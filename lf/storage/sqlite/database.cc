@@ -254,6 +254,24 @@ Result<Statement> Database::Prepare(const std::string& sql) {
   return Statement(std::move(statement));
 }
 
+Result<void> Database::ReadFront(const char* table, const char* column, int64_t row, size_t count,
+                                 std::string* bytes) {
+  sqlite3_blob* opened = nullptr;
+  if (sqlite3_blob_open(state_->handle, "main", table, column, row, 0, &opened) != SQLITE_OK)
+    return state_->Failed();
+  const std::unique_ptr<sqlite3_blob, int (*)(sqlite3_blob*)> blob(opened, sqlite3_blob_close);
+  const auto size = static_cast<size_t>(sqlite3_blob_bytes(blob.get()));
+  if (size < kHashBytes || count > size - kHashBytes)
+    return Fault(
+        fmt::format("is damaged: found {} bytes in column {}, expected at least {}; copy "
+                    "or make it again",
+                    size, column, count + kHashBytes));
+  bytes->resize(count);
+  if (sqlite3_blob_read(blob.get(), bytes->data(), static_cast<int>(count), 0) != SQLITE_OK)
+    return state_->Failed();
+  return {};
+}
+
 Result<void> Database::CheckTables(const std::vector<std::string>& scripts) {
   using Tables = std::vector<std::string>;
   const auto tables_of = [](Database& database) -> Result<Tables> {

@@ -102,6 +102,13 @@ class Database {
   Result<void> Execute(const std::string& sql);
   Result<Statement> Prepare(const std::string& sql);
 
+  // Reads the first `count` bytes of a value that BindBlob() has stored, without reading the rest
+  // or checking its checksum. An error as from Statement::Step() if there is no such row, or if it
+  // has no so many bytes.
+  //   row  value of the row's integer primary key
+  Result<void> ReadFront(const char* table, const char* column, int64_t row, size_t count,
+                         std::string* bytes);
+
   const std::string& name() const;  // path of the file, as messages show it
   // Returns the error "package-0000.lfp: " + message: kInput, or kOutput for a database that is
   // written.

@@ -133,6 +133,27 @@ TEST_F(DatabaseTest, DamageIsAnErrorOrChangesNothing) {
   }
 }
 
+// The first bytes of a blob are read without the rest. More than it has, other rows and other
+// columns are errors.
+TEST_F(DatabaseTest, ReadsTheFrontOfABlob) {
+  Database database = Database::Open(Write(), kFormat, {kThings}).value();
+  std::string front;
+  for (const size_t count : {0, 1, 40, 70}) {
+    ASSERT_TRUE(database.ReadFront("things", "bytes", 10, count, &front));
+    EXPECT_EQ(front, BytesOf(10).substr(0, count));
+  }
+  const auto message_of = [&](const char* column, int64_t row, size_t count) {
+    const Result<void> read = database.ReadFront("things", column, row, count, &front);
+    return read ? std::string() : read.error().message;
+  };
+  EXPECT_NE(
+      message_of("bytes", 10, 71).find("found 78 bytes in column bytes, expected at least 79"),
+      std::string::npos);
+  EXPECT_NE(message_of("bytes", 999, 1).find("a damaged one"), std::string::npos);
+  EXPECT_NE(message_of("number", 3, 1), "");
+  EXPECT_NE(message_of("nothing", 3, 1), "");
+}
+
 TEST_F(DatabaseTest, ColumnsOfOtherTypesAreNamed) {
   Database database = Database::Open(Write(2), kFormat, {kThings}).value();
   const auto fault = [&](const char* sql, const auto& read) {
