@@ -72,7 +72,7 @@ function(lf_find_picture_library key format header library)
     set(FOUND_${key} TRUE PARENT_SCOPE)
     target_include_directories(lf_picture_libraries SYSTEM INTERFACE ${LF_${key}_INCLUDE})
   else()
-    message(STATUS "${library} is missing: the programs are built without ${format} images")
+    message(STATUS "${library} is missing: the programs are built without ${format} files")
   endif()
 endfunction()
 
@@ -105,6 +105,8 @@ lf_find_picture_library(JXL "JPEG XL" jxl/decode.h jxl)
 lf_load_picture_library(JXL)
 lf_find_picture_library(HEIF HEIF libheif/heif.h heif)
 lf_load_picture_library(HEIF)
+lf_find_picture_library(HDF5 HDF5 hdf5.h hdf5 hdf5/serial)
+lf_load_picture_library(HDF5)
 
 # Optional: display views of frames (--view).
 find_path(LF_OCIO_INCLUDE OpenColorIO/OpenColorIO.h)

@@ -31,6 +31,7 @@
 #include "lf/light_field/model/brackets.h"
 #include "lf/light_field/model/image_files.h"
 #include "lf/light_field/transforms_json/transforms_json.h"
+#include "lf/pixels/files/hdf5_array.h"
 #include "lf/pixels/files/view_array.h"
 #include "lf/storage/packed/packed_store_file.h"
 
@@ -244,12 +245,20 @@ std::optional<Result<LightField>> OpenOwnForm(const fs::path& path, const OpenOp
           "are rows and columns, give their distance to lfimport ({{pitch}})",
           folder.string());
   }
+  if (const std::optional<fs::path> array = ArrayIn(path)) return OpenArray(*array, options, path);
   const std::vector<fs::path> stores = PackedStoresIn(path);
   if (stores.size() == 1) return OpenPackedStore(stores[0], options);
   if (stores.size() > 1)
     return InputError(fmt::format(
         "{}: holds several packed stores, such as {} and {}: give the path of one of them",
         path.string(), stores[0].filename().string(), stores[1].filename().string()));
+  return std::nullopt;
+}
+
+// Returns the only image in a folder or its images/; nullopt if there are several, or none.
+std::optional<fs::path> OnlyPictureIn(const fs::path& path) {
+  for (const fs::path& folder : {path, path / kImagesName})
+    if (std::optional<fs::path> picture = PictureOfViewsIn(folder, /*is_any=*/true)) return picture;
   return std::nullopt;
 }
 
@@ -265,8 +274,14 @@ Result<LightField> OpenFolder(const fs::path& path, const OpenOptions& options) 
     const ExportAdvice advice = AdviceOnExportsIn(path);
     // Nobody is told to reconstruct poses that are there, or of all the forms that are not there.
     if (advice.has_poses)
-      return InputError(fmt::format("{}: holds no light field{}", path.string(), advice.text));
-    hint = advice.text + PhotographsIn(path) + series;
+      return InputError(
+          fmt::format("{}: holds no light field{}{}", path.string(), advice.text, advice.command));
+    hint = PhotographsIn(path) + series;
+    if (hint.empty() && advice.text.empty())
+      if (const std::optional<fs::path> picture = OnlyPictureIn(path))
+        return OpenPicture(*picture, options, path);
+    // A command must end the message.
+    hint = advice.text + (hint.empty() ? advice.command : hint);
   }
   return InputError(fmt::format(
       "{}: holds no light field: looked for {}, a COLMAP model in it or in sparse/0, NAME_par.txt, "
@@ -285,7 +300,8 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
   if (!fs::exists(status))
     return InputError(fmt::format("{}: no such file or folder", path.string()));
   if (fs::is_directory(status)) return OpenFolder(path, options);
-  if (path.extension() == ".npy" && HoldsViewArray(path)) return OpenArray(path, options);
+  if (HasHdf5Name(path) || (path.extension() == ".npy" && HoldsViewArray(path)))
+    return OpenArray(path, options, path);
   if (std::optional<Result<LightField>> opened = OpenFile(path, options)) return *opened;
   if (IsImageName(path.filename().string())) return OpenPicture(path, options, path);
   return InputError(
@@ -326,7 +342,8 @@ bool HoldsLightField(const fs::path& folder) {
   if (model && *model) return true;
   const Result<std::optional<fs::path>> calibration = CalibrationIn(folder);
   return !calibration || *calibration || !SplitsIn(folder).empty() || HoldsGrid(folder) ||
-         !PackedStoresIn(folder).empty() || !ExportsIn(folder, /*reads=*/true).empty();
+         ArrayIn(folder) || !PackedStoresIn(folder).empty() ||
+         !ExportsIn(folder, /*reads=*/true).empty();
 }
 
 bool HoldsOwnAndItsSource(const fs::path& folder, bool has_grid) {
@@ -337,7 +354,7 @@ bool HoldsOwnAndItsSource(const fs::path& folder, bool has_grid) {
   const Result<std::optional<fs::path>> model = FindColmapModel(folder);
   if (model && *model) return true;
   if (has_grid && (HoldsImages(folder) || HoldsImages(folder / kImagesName))) return true;
-  if (PictureOfViewsIn(folder, false)) return true;
+  if (PictureOfViewsIn(folder, false) || ArrayIn(folder)) return true;
   const Result<std::optional<fs::path>> other = OtherCalibrationIn(folder);
   return (other && *other) || !SplitsIn(folder).empty() || HoldsGrid(folder) ||
          !ExportsIn(folder, /*reads=*/true).empty();

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "lf/core/result.h"
 #include "lf/import/formats/open_light_field.h"
@@ -23,7 +24,14 @@ Result<LightField> OpenStanford(const std::filesystem::path& folder, const OpenO
 Result<LightField> OpenPicture(const std::filesystem::path& path, const OpenOptions& options,
                                const std::filesystem::path& asked_for);
 
-// Opens an array of views, which states its rows and columns.
-Result<LightField> OpenArray(const std::filesystem::path& path, const OpenOptions& options);
+// Opens an array of views, which states its rows and columns. An HDF5 file may also state the
+// geometry (hci_archive.h), which the options override.
+//   asked_for  the array, or its folder, as the user typed it
+Result<LightField> OpenArray(const std::filesystem::path& path, const OpenOptions& options,
+                             const std::filesystem::path& asked_for);
+
+// Returns the lf.h5 in a folder, or its only HDF5 file; nullopt if there is none, or if there are
+// several.
+std::optional<std::filesystem::path> ArrayIn(const std::filesystem::path& folder);
 
 }  // namespace lf
