@@ -114,6 +114,16 @@ class PicturesOfViewsTest(ProgramTestCase):
         expected = self.frames(self.native("row"))
         self.assert_same(self.frames(self.native(f"q_qs{COLUMNS}x{ROWS}a1.33.png")), expected)
 
+    def assert_array_gives(self, name, expected):
+        """Checks the frames of an array, and those of a packed store that is made from it."""
+        native = self.native(name)
+        content = json.loads((native / "transforms.json").read_text())
+        self.assertEqual(content["frames"][5]["file_path"], f"../{name}#view+1+1")
+        self.assert_same(self.frames(native), expected)
+        store = self.folder / f"{name}.lfs"
+        self.run_tool(COMPRESSOR, native, "-o", store, "--profile", "lossless")
+        self.assert_same(self.frames(store), expected)
+
     def test_arrays_give_the_frames_of_a_folder(self):
         expected = self.frames(self.native("views"))
         rgb = self.views[..., ::-1]
@@ -121,13 +131,7 @@ class PicturesOfViewsTest(ProgramTestCase):
         np.save(self.folder / "big.npy", np.ascontiguousarray(rgb).astype(">u2"))
         for name in ("little.npy", "big.npy"):
             with self.subTest(name):
-                native = self.native(name)
-                content = json.loads((native / "transforms.json").read_text())
-                self.assertEqual(content["frames"][5]["file_path"], f"../{name}#view+1+1")
-                self.assert_same(self.frames(native), expected)
-                store = self.folder / f"{name}.lfs"
-                self.run_tool(COMPRESSOR, native, "-o", store, "--profile", "lossless")
-                self.assert_same(self.frames(store), expected)
+                self.assert_array_gives(name, expected)
 
     def test_arrays_of_floats_hold_light(self):
         for kind in (np.float32, np.float64):
@@ -167,13 +171,7 @@ class PicturesOfViewsTest(ProgramTestCase):
                           ("across.h5", {"chunks": (ROWS, 2, 7, 9, 3), "compression": "gzip", "shuffle": True})):
             with self.subTest(name):
                 self.h5(name, **how)
-                native = self.native(name)
-                content = json.loads((native / "transforms.json").read_text())
-                self.assertEqual(content["frames"][5]["file_path"], f"../{name}#view+1+1")
-                self.assert_same(self.frames(native), expected)
-                store = self.folder / f"{name}.lfs"
-                self.run_tool(COMPRESSOR, native, "-o", store, "--profile", "lossless")
-                self.assert_same(self.frames(store), expected)
+                self.assert_array_gives(name, expected)
 
     def test_attributes_of_hdf5_files_state_the_geometry(self):
         archive = {"dH": np.float32([0.5]), "dV": 0.25, "focalLength": 60.0, "shift": [3.0], "hRes": COLUMNS,

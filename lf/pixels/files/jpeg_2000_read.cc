@@ -179,9 +179,7 @@ class Jpeg2000Decoder : public PictureDecoder {
 }  // namespace
 
 Result<std::unique_ptr<PictureDecoder>> OpenJpeg2000(const FileBytes& file) {
-  auto decoder = std::make_unique<Jpeg2000Decoder>(file);
-  LF_RETURN_IF_ERROR(decoder->Open());
-  return std::unique_ptr<PictureDecoder>(std::move(decoder));
+  return Opened<Jpeg2000Decoder>(file);
 }
 
 }  // namespace lf
