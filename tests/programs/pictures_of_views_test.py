@@ -337,7 +337,7 @@ class PicturesOfViewsTest(ProgramTestCase):
         for name, columns, rows, layout in (
                 ("scene_5x4.png", 5, 4, "mosaic"), ("scene.png", 5, 4, "mosaic"), ("plain_5x4.png", 5, 4, "lenslets"),
                 ("IMG_0001_eslf.png", 5, 5, "lenslets"), ("IMG_0002_eslf.png", 7, 7, "lenslets"),
-                ("lenslets.png", 9, 9, "lenslets")):
+                ("lenslets.png", 9, 9, "lenslets"), ("scene_qs5x5a1.33.png", 5, 5, "mosaic")):
             views = self.scene(columns, rows, 98 if "2_eslf" in name else 80, 70 if "2_eslf" in name else 60)
             picture = (self.mosaic(views) if layout == "mosaic" else views.transpose(2, 0, 3, 1, 4).reshape(
                 rows * views.shape[2], columns * views.shape[3], 3))

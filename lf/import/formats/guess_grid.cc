@@ -201,11 +201,38 @@ std::optional<std::array<int, 2>> FindLenslets(const Image<float>& picture) {
   return OnBothAxes(picture, ViewsUnderLenslets);
 }
 
+bool HoldsGridOfCameras(const Image<float>& picture, const std::array<int, 2>& grid) {
+  constexpr double kClearly = 0.95;
+  const auto [columns, rows] = grid;
+  const int width = picture.width() / columns, height = picture.height() / rows;
+  if (columns < 2 || rows < 2 || width < 1 || height < 1) return false;
+  const auto difference = [&](std::array<int, 2> one, std::array<int, 2> other) {
+    double sum = 0;
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x)
+        sum += std::abs(double{picture.at(one[0] * width + x, one[1] * height + y)} -
+                        picture.at(other[0] * width + x, other[1] * height + y));
+    return sum;
+  };
+  double below = 0, along = 0;
+  for (int row = 0; row + 1 < rows; ++row) {
+    below += difference({0, row}, {0, row + 1});
+    // A quilt begins below: its rows continue in the row above.
+    along += difference({columns - 1, row + 1}, {0, row});
+  }
+  return below < kClearly * along;
+}
+
 std::optional<PictureGrid> GuessPictureGrid(const fs::path& picture) {
   const Result<ImageWithInfo> read = ReadImageWithInfo(picture);
   if (!read || read->info.raw) return std::nullopt;
   const Image<float> plane =
       std::visit([]<class T>(const Image<T>& image) { return PlaneOf(image); }, read->image);
+  if (const std::optional<PictureGrid> quilt = PictureGridOfName(picture.filename().string());
+      quilt && quilt->layout == PictureLayout::kQuilt) {
+    if (!HoldsGridOfCameras(plane, quilt->grid)) return quilt;
+    return PictureGrid{.layout = PictureLayout::kMosaic, .grid = quilt->grid};
+  }
   const std::optional<std::array<int, 2>> named = GridAtEndOfName(picture.filename().string());
   const bool is_named =
       named && plane.width() % (*named)[0] == 0 && plane.height() % (*named)[1] == 0 &&

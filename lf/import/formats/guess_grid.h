@@ -26,8 +26,14 @@ std::optional<std::array<int, 2>> FindTiles(const Image<float>& picture);
 // place under the lenslet. Small mosaics may seem to be such pictures: ask FindTiles() before.
 std::optional<std::array<int, 2>> FindLenslets(const Image<float>& picture);
 
+// Returns true if the views of a picture with the name of a quilt are those of a grid of cameras
+// instead of one row: the first views of two rows of the picture are more alike than the last view
+// of the one and the first of the other, which are neighbours in a quilt.
+bool HoldsGridOfCameras(const Image<float>& picture, const std::array<int, 2>& grid);
+
 // Returns the grid of a picture that can be divided so: what the name states or, without that, what
-// the pixels show. nullopt if nothing is certain, and for files that cannot be read.
+// the pixels show. The name of a quilt counts, unless HoldsGridOfCameras(). nullopt if nothing is
+// certain, and for files that cannot be read.
 std::optional<PictureGrid> GuessPictureGrid(const std::filesystem::path& picture);
 
 }  // namespace lf

@@ -83,6 +83,18 @@ TEST(GuessGrid, FindsViewsUnderLenslets) {
   }
 }
 
+TEST(GuessGrid, TellsQuiltsFromGridsOfCameras) {
+  const Grid grid = {4, 3};
+  Image<float> quilt(4 * 64, 3 * 48);
+  const Scene scene(4);
+  for (int y = 0; y < quilt.height(); ++y)
+    for (int x = 0; x < quilt.width(); ++x)
+      quilt.at(x, y) = scene.At(x % 64, y % 48, (2 - y / 48) * 4 + x / 64, 0);
+  EXPECT_FALSE(HoldsGridOfCameras(quilt, grid));
+  EXPECT_TRUE(HoldsGridOfCameras(Mosaic(grid, 64, 48), grid));
+  EXPECT_FALSE(HoldsGridOfCameras(Mosaic({4, 1}, 64, 48), {4, 1}));
+}
+
 TEST(GuessGrid, OnePhotographIsNoGrid) {
   const Image<float> photograph = Mosaic({1, 1}, 480, 360);
   EXPECT_FALSE(FindTiles(photograph));

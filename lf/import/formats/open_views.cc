@@ -45,10 +45,9 @@ Result<PictureGrid> GridOf(const fs::path& path, const OpenOptions& options, boo
     grid.layout = options.layout.value_or(grid.layout);
     return grid;
   }
-  // Names of pictures of lenslets state no numbers.
-  const bool is_sure =
-      named && !is_other &&
-      (named->layout == PictureLayout::kQuilt || (options.pitch_w && options.focal_px));
+  // Names of pictures of lenslets state no numbers, and some grids of cameras are called quilts.
+  // Somebody who states the geometry knows them.
+  const bool is_sure = named && !is_other && options.pitch_w && options.focal_px;
   const Result<bool> is_divisible = named ? CanBeDivided(path, *named) : Result<bool>(false);
   if (!is_divisible) return is_divisible.error();
   if (is_sure && *is_divisible) return *named;

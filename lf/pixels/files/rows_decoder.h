@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the readers of pictures whose pixels lie in the file as they are have in common: BMP, Netpbm
-// and PFM. Internal to this folder.
+// The base of the readers of pictures whose pixels lie in the file as they are: BMP, Netpbm and
+// PFM. Internal to this folder.
 #pragma once
 
 #include <memory>
