@@ -102,7 +102,7 @@ LOSSY = {
     "phone.heic": (by_program("heif-enc", "-q", "90", "IN", "-o", "OUT"), decoded_by("heif-convert")),
     "web.avif": (by_program("heif-enc", "-A", "-q", "90", "IN", "-o", "OUT"), decoded_by("heif-convert")),
 }
-# The same for grey pictures, [height][width].
+# Formats of grey pictures, [height][width].
 GREY_FORMATS = {
     "eight.pgm": (lambda picture, file: netpbm("P5 {width} {height} {white}\n", 255, picture, file), 0),
     "ten.pgm": (lambda picture, file: netpbm("P5 {width} {height} {white}\n", 1023, picture, file), 0.003),

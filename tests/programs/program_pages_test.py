@@ -190,7 +190,8 @@ class ProgramPagesTest(ProgramTestCase):
         self.assertEqual(self.completed("lffocus nonsense --"), set())
 
     def test_bash_completes_files_by_kind(self):
-        for name in ("a.lfp", "B.LFP", "c d.lfp", "e.lfs", "f.yaml", "g.json", "h.png", "i.mp4", "v.npy", "w.h5", "x.webp"):
+        for name in ("a.lfp", "B.LFP", "c d.lfp", "e.lfs", "f.yaml", "g.json", "h.png", "i.mp4", "v.npy", "w.h5",
+                     "x.webp"):
             (self.folder / name).write_text("")
         (self.folder / "deep").mkdir()
         (self.folder / "deep" / "k.lfs").write_text("")

@@ -242,8 +242,9 @@ void AddFormsThatAreNotRead(std::vector<ExportForm>* forms) {
       .name = "a project of RealityCapture or RealityScan, which is read only by these programs",
       .places = {"*.rcproj", "*.rsproj"},
       .has_poses = true,
-      .advice = "open it there, and save the cameras by Alignment > Export > Registration as "
-                "Bundler, COLMAP, or internal and external camera parameters (CSV or XMP)",
+      .advice = "open it there, and save the cameras by Registration (in RealityScan: Export "
+                "Registration), in the section Export of the tab ALIGNMENT, as Bundler, COLMAP or "
+                "internal and external camera parameters (CSV), or by Metadata (XMP) beside it",
   });
   forms->push_back({
       .name = "a project of Meshroom, which leads to the cameras but does not hold them",

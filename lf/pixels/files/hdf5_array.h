@@ -22,7 +22,7 @@ namespace lf {
 // The numbers that a file states about its views by name, such as dH.
 using Hdf5Attributes = std::map<std::string, double, std::less<>>;
 
-// What the head of a dataset states.
+// The head of a dataset.
 struct Hdf5Dataset {
   std::vector<size_t> shape;
   char kind = 'u';            // 'u' or 'i', a whole number without or with a sign; 'f' a float; '?'

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What readers of arrays of views in files of NumPy and HDF5 have in common. Internal to this
+// Functions that the readers of arrays of views in files of NumPy and HDF5 share. Internal to this
 // folder.
 #pragma once
 
