@@ -42,15 +42,16 @@ class InputsPageTest(ProgramTestCase):
     def setUp(self):
         super().setUp()
         self.field_folder = self.folder / "synth"
-        made = self.call(SYNTH, "lights", "-o", self.field_folder, "--count", COLUMNS * ROWS, "--format", "png", "--size",
-                         "60x60")
+        made = self.call(SYNTH, "lights", "-o", self.field_folder, "--count", COLUMNS * ROWS, "--format", "png",
+                         "--size", "60x60")
         self.assertEqual(made.returncode, 0, made.stderr)
         self.field = json.loads((self.field_folder / "transforms.json").read_text())
         files = [self.field_folder / frame["file_path"] for frame in self.field["frames"]]
         pictures = [np.asarray(Image.open(file).convert("RGB")) for file in files]
         self.views = np.stack(pictures).reshape(ROWS, COLUMNS, *pictures[0].shape)
 
-    # What the programs write, into an empty folder. Each returns what is opened instead of the name in the table.
+    # Each method or function writes the files of a program into an empty folder, and returns what is opened instead of
+    # the name in the table.
 
     def of_formats(write):
         return lambda self, folder: write(self.field, self.field_folder, folder)

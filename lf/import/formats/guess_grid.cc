@@ -165,7 +165,7 @@ std::optional<int> ViewsUnderLenslets(const Image<float>& picture) {
         scores[static_cast<size_t>(count)] =
             std::max(scores[static_cast<size_t>(count)], VarianceOfPeriod(products, count));
   }
-  // Multiples of a period are periods as well.
+  // Each multiple of a period is also one.
   const double best = *std::max_element(scores.begin(), scores.end());
   if (best < kCertain) return std::nullopt;
   const auto first = std::find_if(scores.begin(), scores.end(),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the attributes of an HDF5 file of the first light field benchmark of the HCI state about its
-// cameras (doc/formats/pictures_of_views.md, "HDF5"; Wanner, Meister, Goldlücke 2013). Internal to
-// this folder.
+// Interprets the attributes of an HDF5 file of the first light field benchmark of the HCI, which
+// state the geometry of its cameras (doc/formats/pictures_of_views.md, "HDF5"; Wanner, Meister,
+// Goldlücke 2013). Internal to this folder.
 #pragma once
 
 #include <optional>
