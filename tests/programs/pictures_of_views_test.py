@@ -237,7 +237,16 @@ class PicturesOfViewsTest(ProgramTestCase):
         (self.folder / "two").mkdir()
         self.h5("two/a.h5")
         self.h5("two/b.h5")
-        self.fails(3, ["two/a.h5", "one of several"], IMPORT, self.folder / "two")
+        self.fails(3, ["two/a.h5", "is an HDF5 file", "give its path"], IMPORT, self.folder / "two")
+
+    def test_features_in_an_hdf5_file_hide_nothing(self):
+        self.h5("views/features.h5", dataset="view_r0_c0.png")
+        self.run_tool(IMPORT, self.folder / "views", "-o", self.folder / "native", *GEOMETRY)
+        (self.folder / "photographs").mkdir()
+        for number in range(3):
+            self.write(f"photographs/DSC{number}.png", self.views[0, number])
+        self.h5("photographs/features.h5", dataset="DSC0.png")
+        self.fails(3, ["reconstruct the poses first"], IMPORT, self.folder / "photographs")
 
     def test_archives_of_arrays_print_the_call_that_makes_a_file_of_one(self):
         expected = self.frames(self.native("views"))

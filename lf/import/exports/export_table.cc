@@ -293,11 +293,10 @@ void AddFormsThatAreNotRead(std::vector<ExportForm>* forms) {
       .advice = "export the photographs and their cameras from the program that made it",
   });
   forms->push_back({
-      .name = "one of several HDF5 files",
+      .name = "an HDF5 file",
       .places = {"*.h5", "*.hdf5"},
       .words = {"\x89HDF\r\n\x1A\n"},
-      .has_poses = true,
-      .advice = "give the path of the file that holds the views",
+      .advice = "give its path if it holds the views of a grid of cameras",
   });
   forms->push_back({
       .name = "a file of Matlab 7.3, which is not read",

@@ -245,13 +245,13 @@ std::optional<Result<LightField>> OpenOwnForm(const fs::path& path, const OpenOp
           "are rows and columns, give their distance to lfimport ({{pitch}})",
           folder.string());
   }
-  if (const std::optional<fs::path> array = ArrayIn(path)) return OpenArray(*array, options, path);
   const std::vector<fs::path> stores = PackedStoresIn(path);
   if (stores.size() == 1) return OpenPackedStore(stores[0], options);
   if (stores.size() > 1)
     return InputError(fmt::format(
         "{}: holds several packed stores, such as {} and {}: give the path of one of them",
         path.string(), stores[0].filename().string(), stores[1].filename().string()));
+  if (const std::optional<fs::path> array = ArrayIn(path)) return OpenArray(*array, options, path);
   return std::nullopt;
 }
 

@@ -143,7 +143,8 @@ std::optional<fs::path> ArrayIn(const fs::path& folder) {
     if (found) return std::nullopt;
     found = path;
   }
-  return found;
+  // Many programs keep other things in such files, such as the features of photographs.
+  return found && ReadViewArray(*found) ? found : std::nullopt;
 }
 
 }  // namespace lf

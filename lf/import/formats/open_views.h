@@ -30,8 +30,7 @@ Result<LightField> OpenPicture(const std::filesystem::path& path, const OpenOpti
 Result<LightField> OpenArray(const std::filesystem::path& path, const OpenOptions& options,
                              const std::filesystem::path& asked_for);
 
-// Returns the lf.h5 in a folder, or its only HDF5 file; nullopt if there is none, or if there are
-// several.
+// Returns the lf.h5 in a folder or, if it holds views, the only HDF5 file there; nullopt otherwise.
 std::optional<std::filesystem::path> ArrayIn(const std::filesystem::path& folder);
 
 }  // namespace lf
