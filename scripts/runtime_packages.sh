@@ -21,7 +21,7 @@ if grep -q 'not found' <<<"$loaded"; then
   exit 1
 fi
 # Programs name the libraries that they load later.
-mapfile -t later < <(grep --text --only-matching --no-filename -E 'lib(heif|jxl)\.so\.[0-9.]+' "${programs[@]}" | sort -u)
+mapfile -t later < <(grep --text --only-matching --no-filename -E 'lib(heif|jxl|hdf5_serial|openjp2)\.so\.[0-9.]+' "${programs[@]}" | sort -u)
 for name in "${later[@]}"; do
   path=$(/sbin/ldconfig -p | awk -v name="$name" '$1 == name && !count++ { print $NF }')
   if [[ -z $path ]]; then

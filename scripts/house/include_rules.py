@@ -22,6 +22,7 @@ OWNERS = {
     "openjpeg.h": {"pixels/files"},
     "jxl/": {"pixels/files"},
     "libheif/": {"pixels/files"},
+    "hdf5.h": {"pixels/files"},
     "yaml-cpp/": {"camera/path"},
     "nlohmann/": {"camera/path", "densify", "distribute/compress", "distribute/preprocess", "film/compare",
                   "import/exports", "import/formats", "import/report", "light_field/transforms_json", "render/state"},

@@ -9,6 +9,7 @@ from chain_page import Chain
 from chain_paths import KINDS, PathChains
 from chain_python import READERS, WRITERS, PythonChains, python_package
 from chain_results import ResultChains
+from chain_views import ViewChains
 from chain_world import FIELDS
 from covering_cells import covering_cells
 from matrix_world import once
@@ -38,6 +39,14 @@ LIGHT_WRITERS = {
     "lffocus views": "light_views",
     "lffocus views --values srgb16": "light_views_16",
     "lffocus views --values linear": "light_linear_views",
+}
+VIEW_WRITERS = {
+    "lfimport --grid": "imported_grid",
+    "lfimport --grid --serpentine": "imported_serpentine",
+    "lfimport --grid --layout mosaic": "imported_mosaic",
+    "lfimport --grid --layout lenslets": "imported_lenslets",
+    "lfimport .npy": "imported_array",
+    "lfimport .h5": "imported_hdf5",
 }
 LIGHT_READERS = {
     "lfrenderer": "see_film",
@@ -156,6 +165,13 @@ THINGS = {
         FIELDS, LIGHT_WRITERS, LIGHT_READERS,
         lambda ways, chain, written: ways.direct_of(chain.what, chain.reader, ways.field(chain.flaws), chain.flaws),
         _is_of_another_capture),
+    "grid of views": Thing(
+        ("views",), VIEW_WRITERS, LIGHT_READERS,
+        lambda ways, chain, written: ways.direct_of(
+            chain.what, chain.reader,
+            ways.field_of_views("serpentine" if "serpentine" in chain.writer else "grid"), chain.flaws),
+        # The page holds the names of LF images.
+        lambda chain: chain.reader == "lfvisualizer --export"),
     "path": Thing(
         KINDS, PATH_WRITERS, PATH_READERS, _direct_path,
         # Only paths of views have a direct way of --frames: the moments are resampled before they get their views.
@@ -209,7 +225,7 @@ def add_python():
         THINGS[what].readers.update(readers)
 
 
-class Ways(LightChains, PathChains, FrameChains, ResultChains, PythonChains):
+class Ways(LightChains, ViewChains, PathChains, FrameChains, ResultChains, PythonChains):
     """All writers, readers and direct ways."""
 
     def __init__(self, programs, folder):

@@ -213,7 +213,10 @@ class World:
         file = self.new_folder("path.yaml")
         if field == "synth":
             return self.example(field)
-        file.write_text(PATH_YAML.format(**PATHS[kind]))
+        text = PATH_YAML.format(**PATHS[kind])
+        if field == "views":  # whose world has z forward and y down
+            text = text.replace("[0, 0, -1], up: [0, 1, 0]", "[0, 0, 1], up: [0, -1, 0]")
+        file.write_text(text)
         for frame in (1, 2):
             y, x = np.mgrid[0:30, 0:40]
             depths = 0.26 + 0.03 * np.sin(x / 9 + frame) * np.cos(y / 7) - np.where(x > 15 + 4 * frame, 0.05, 0)

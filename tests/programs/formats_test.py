@@ -18,6 +18,7 @@ import numpy as np
 
 import write_exports
 import write_formats
+import write_pictures
 import write_scans
 
 SYNTH = EXAMPLE = IMPORT = RENDERER = None
@@ -213,6 +214,67 @@ class FormatsTest(unittest.TestCase):
                       write_scans.write_metashape, write_scans.write_reality_csv, write_scans.write_reality_xmp):
             with self.subTest(write.__name__):
                 self.check(write_formats.exported(write), self.jittered)
+
+    def pictures_of_parallel(self):
+        field = json.loads((self.parallel / "transforms.json").read_text())
+        files = [self.parallel / frame["file_path"] for frame in field["frames"]]
+        return [write_pictures.decoded_by_pillow(file) for file in files]
+
+    def image_files(self, name, write, pictures):
+        """Writes the light field `parallel` with pictures in a format, and returns its frame."""
+        folder = self.folder / f"of {name}"
+        folder.mkdir()
+        field = json.loads((self.parallel / "transforms.json").read_text())
+        for index, (frame, picture) in enumerate(zip(field["frames"], pictures)):
+            frame["file_path"] = f"{index:02}-{name}"
+            write(picture, folder / frame["file_path"])
+        (folder / "transforms.json").write_text(json.dumps(field))
+        return self.frame_of(folder)
+
+    def frame_of(self, folder):
+        path, _ = self.native_frame(self.parallel)
+        out = folder / "frames"
+        run(RENDERER, folder, path, "-o", out, "--frames", 1, "--format", "exr-float", "--estimator", "bilinear")
+        return picture(out)
+
+    def test_every_format_of_image_files(self):
+        colour = self.pictures_of_parallel()
+        grey = [picture[..., 1] for picture in colour]
+        for pictures, formats in ((colour, write_pictures.FORMATS), (grey, write_pictures.GREY_FORMATS)):
+            kind = "grey" if formats is write_pictures.GREY_FORMATS else "colour"
+            expected = self.image_files(f"{kind}.png", write_pictures.by_pillow(), pictures)
+            self.assertGreater(expected.std(), 0.01)
+            for name, (write, most) in formats.items():
+                with self.subTest(name):
+                    frame = self.image_files(name, write, pictures)
+                    difference = np.abs(frame - expected)
+                    self.assertLessEqual(difference.max(), most)
+                    self.assertLessEqual(difference.mean(), most / 5)
+
+    def test_lossy_image_files_have_the_pixels_that_other_programs_decode(self):
+        original = self.pictures_of_parallel()
+        unharmed = self.image_files("unharmed.png", write_pictures.by_pillow(), original)
+        for name, (write, decode) in write_pictures.LOSSY.items():
+            with self.subTest(name):
+                frame = self.image_files(name, write, original)
+                folder = self.folder / f"of {name}"
+                decoded = [decode(file) for file in sorted(folder.glob(f"*{name}"))]
+                expected = self.image_files(f"decoded {name}.png", write_pictures.by_pillow(), decoded)
+                np.testing.assert_array_equal(frame, expected)
+                self.assertGreater(np.abs(frame - unharmed).max(), 0)
+                self.assertLessEqual(np.abs(frame - unharmed).mean(), 0.02)
+
+    def test_colour_profiles_of_image_files(self):
+        pictures = self.pictures_of_parallel()
+        profile = write_pictures.exchanged_profile()
+        plain = self.image_files("without profile.png", write_pictures.by_pillow(), pictures)
+        expected = self.image_files("with profile.png", write_pictures.by_pillow(icc_profile=profile), pictures)
+        self.assertGreater(np.abs(expected - plain).max(), 0.01)
+        for name, write in (("profile.webp", write_pictures.by_pillow(lossless=True, exact=True, icc_profile=profile)),
+                            ("profile.jxl", write_pictures.by_program("cjxl", "-d", "0", "IN", "OUT", profile=profile)),
+                            ("profile.tif", write_pictures.by_pillow(icc_profile=profile))):
+            with self.subTest(name):
+                np.testing.assert_array_equal(self.image_files(name, write, pictures), expected)
 
     def test_every_lens_gives_the_picture_of_the_pinhole(self):
         """Renders light fields whose LF cameras have other lenses. The tolerance is larger, because the pixels of

@@ -6,11 +6,15 @@ quilt give the same bits of frames as a folder of the same views, by every way f
 usage: pictures_of_views_test.py LFIMPORT LFRENDERER LFCOMPRESSOR LFPREPROCESSOR LFMERGE
 """
 import json
+import pathlib
+import shlex
+import shutil
 import subprocess
 import sys
 import unittest
 
 import cv2
+import h5py
 import numpy as np
 
 from exr_file import channels_of
@@ -110,6 +114,16 @@ class PicturesOfViewsTest(ProgramTestCase):
         expected = self.frames(self.native("row"))
         self.assert_same(self.frames(self.native(f"q_qs{COLUMNS}x{ROWS}a1.33.png")), expected)
 
+    def assert_array_gives(self, name, expected):
+        """Checks the frames of an array, and those of a packed store that is made from it."""
+        native = self.native(name)
+        content = json.loads((native / "transforms.json").read_text())
+        self.assertEqual(content["frames"][5]["file_path"], f"../{name}#view+1+1")
+        self.assert_same(self.frames(native), expected)
+        store = self.folder / f"{name}.lfs"
+        self.run_tool(COMPRESSOR, native, "-o", store, "--profile", "lossless")
+        self.assert_same(self.frames(store), expected)
+
     def test_arrays_give_the_frames_of_a_folder(self):
         expected = self.frames(self.native("views"))
         rgb = self.views[..., ::-1]
@@ -117,13 +131,7 @@ class PicturesOfViewsTest(ProgramTestCase):
         np.save(self.folder / "big.npy", np.ascontiguousarray(rgb).astype(">u2"))
         for name in ("little.npy", "big.npy"):
             with self.subTest(name):
-                native = self.native(name)
-                content = json.loads((native / "transforms.json").read_text())
-                self.assertEqual(content["frames"][5]["file_path"], f"../{name}#view+1+1")
-                self.assert_same(self.frames(native), expected)
-                store = self.folder / f"{name}.lfs"
-                self.run_tool(COMPRESSOR, native, "-o", store, "--profile", "lossless")
-                self.assert_same(self.frames(store), expected)
+                self.assert_array_gives(name, expected)
 
     def test_arrays_of_floats_hold_light(self):
         for kind in (np.float32, np.float64):
@@ -146,8 +154,123 @@ class PicturesOfViewsTest(ProgramTestCase):
         self.fails(2, ["--grid", "leave the option out"], IMPORT, self.folder / "views.npy", "--grid", "4x3", *GEOMETRY)
         (self.folder / "views.npy").write_bytes((self.folder / "views.npy").read_bytes()[:-1])
         self.fails(3, ["copy or save it again"], IMPORT, self.folder / "views.npy", *GEOMETRY)
-        (self.folder / "a.h5").write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(100))
-        self.fails(3, ["an HDF5 file", "numpy.save()"], IMPORT, self.folder / "a.h5")
+
+    def h5(self, name, array=None, *, dataset="LF", attributes=None, **how):
+        """Writes an HDF5 file of the views, and returns its path."""
+        with h5py.File(self.folder / name, "w") as file:
+            array = self.views[..., ::-1] if array is None else array
+            file.create_dataset(dataset, data=array, **how)
+            file.attrs.update(attributes or {})
+        return self.folder / name
+
+    def test_hdf5_files_give_the_frames_of_a_folder(self):
+        expected = self.frames(self.native("views"))
+        rows = (1, 1, 10, 64, 3)
+        for name, how in (("whole.h5", {}), ("big.h5", {"dtype": ">u2"}), ("views.hdf5", {"dataset": "views"}),
+                          ("each.h5", {"chunks": rows, "compression": "gzip"}),
+                          ("across.h5", {"chunks": (ROWS, 2, 7, 9, 3), "compression": "gzip", "shuffle": True})):
+            with self.subTest(name):
+                self.h5(name, **how)
+                self.assert_array_gives(name, expected)
+
+    def test_attributes_of_hdf5_files_state_the_geometry(self):
+        archive = {"dH": np.float32([0.5]), "dV": 0.25, "focalLength": 60.0, "shift": [3.0], "hRes": COLUMNS,
+                   "vRes": np.int32(ROWS), "xRes": 64, "yRes": 48, "channels": 3, "camDistance": 10}
+        (self.folder / "archive").mkdir()
+        self.h5("archive/lf.h5", attributes=archive)
+        self.h5("archive/labels.h5", dataset="GT_LABELS")
+        out = self.folder / "native"
+        self.run_tool(IMPORT, self.folder / "archive", "-o", out)
+        content = json.loads((out / "transforms.json").read_text())
+        for index, frame in enumerate(content["frames"]):
+            row, column = divmod(index, COLUMNS)
+            across, down = column - (COLUMNS - 1) / 2, row - (ROWS - 1) / 2
+            pose = np.array(frame["transform_matrix"])
+            np.testing.assert_allclose(np.abs(pose[:3, 3]), np.abs([0.5 * across, 0.25 * down, 0]), atol=1e-12)
+            # The disparity of a point at depth Z between neighbouring columns is dH focalLength / Z - shift.
+            lens = {**content, **frame}
+            self.assertAlmostEqual(lens["fl_x"], 60)
+            self.assertAlmostEqual(lens["cx"], 32 + 3 * across)
+            self.assertAlmostEqual(lens["cy"], 24 + 1.5 * down)
+        # Every program opens it, and options replace attributes.
+        film = self.frames(self.folder / "archive")
+        self.assert_same(self.frames(out), film)
+        self.h5("bare.h5")
+        self.h5("other.h5", attributes={**archive, "dH": 7, "focalLength": 80, "shift": 9})
+        for name in ("bare", "other"):
+            out = self.folder / f"of {name}"
+            self.run_tool(IMPORT, self.folder / f"{name}.h5", "-o", out, "--pitch", "0.5,0.25", "--focal-px", 60,
+                          "--plane-distance", 10)
+            self.assert_same(self.frames(out), film)
+
+    def test_hdf5_files_without_geometry_print_the_call_that_opens_them(self):
+        for name, attributes, said in (("none.h5", {}, "no distance from one camera to the next and no focal length"),
+                                       ("metres.h5", {"dH": 0.04, "focalLength": 0.035, "shift": 1},
+                                        "focalLength is 0.035, which cannot be pixels")):
+            self.h5(name, attributes=attributes)
+            for program, *rest in ((IMPORT, ), (RENDERER, self.folder / "path.yaml", "-o", self.folder / "f")):
+                done = self.run_tool(program, self.folder / name, *rest, code=3)
+                self.assertIn(said, done.stderr)
+                last = done.stderr.strip().splitlines()[-1]
+                call = last[last.rindex(": ") + 2:]
+                self.assertIn("--plane-distance 4" if attributes else "--plane-distance 100", call)
+                shell = call.replace(str(IMPORT), "lfimport", 1).replace("lfimport", str(IMPORT), 1)
+                self.assertEqual(subprocess.run(shell, shell=True, capture_output=True).returncode, 0, call)
+
+    def test_other_hdf5_files_are_refused(self):
+        for name, said, how in (("signed", "with a sign of 16 bits", {"dtype": "i2"}),
+                                ("flat", "shape", {"array": self.views[0, 0]}),
+                                ("name", "no dataset LF, but GT_DEPTH", {"dataset": "GT_DEPTH"}),
+                                ("text", "dH is not one number", {"attributes": {"dH": "wide"}}),
+                                ("sizes", "hRes is 17", {"attributes": {"hRes": 17}}),
+                                ("pitch", "dH is -1", {"attributes": {"dH": -1}})):
+            with self.subTest(name):
+                self.fails(3, [f"{name}.h5", said], IMPORT, self.h5(f"{name}.h5", **how), "--focal-px", 60)
+        whole = self.h5("whole.h5").read_bytes()
+        for cut in (9, 100, len(whole) // 2, len(whole) - 1):
+            (self.folder / "cut.h5").write_bytes(whole[:cut])
+            self.fails(3, ["cut.h5: truncated or damaged"], IMPORT, self.folder / "cut.h5", *GEOMETRY)
+        with h5py.File(self.folder / "large.h5", "w") as file:  # no byte of it is stored
+            file.create_dataset("LF", (9, 9, 1 << 30, 1 << 30, 3), "u1", chunks=(1, 1, 64, 64, 3))
+        self.fails(3, ["large.h5"], IMPORT, self.folder / "large.h5", *GEOMETRY)
+        self.fails(2, ["--grid", "leave the option out"], IMPORT, self.folder / "whole.h5", "--grid", "4x3", *GEOMETRY)
+        (self.folder / "two").mkdir()
+        self.h5("two/a.h5")
+        self.h5("two/b.h5")
+        self.fails(3, ["two/a.h5", "is an HDF5 file", "give its path"], IMPORT, self.folder / "two")
+
+    def test_features_in_an_hdf5_file_hide_nothing(self):
+        self.h5("views/features.h5", dataset="view_r0_c0.png")
+        self.run_tool(IMPORT, self.folder / "views", "-o", self.folder / "native", *GEOMETRY)
+        (self.folder / "photographs").mkdir()
+        for number in range(3):
+            self.write(f"photographs/DSC{number}.png", self.views[0, number])
+        self.h5("photographs/features.h5", dataset="DSC0.png")
+        self.fails(3, ["reconstruct the poses first"], IMPORT, self.folder / "photographs")
+
+    def test_archives_of_arrays_print_the_call_that_makes_a_file_of_one(self):
+        expected = self.frames(self.native("views"))
+        rgb = np.ascontiguousarray(self.views[..., ::-1])
+        np.savez(self.folder / "a.npz", depth=np.zeros((3, 4)), LF=rgb)
+        matlab = self.folder / "b.mat"
+        with h5py.File(matlab, "w", userblock_size=512) as file:
+            file["LF"] = rgb.T
+        bytes_ = bytearray(matlab.read_bytes())
+        bytes_[:19] = b"MATLAB 7.3 MAT-file"
+        matlab.write_bytes(bytes_)
+        files = ["a.npz", "b.mat"]
+        try:
+            from scipy.io import savemat
+            savemat(self.folder / "c.mat", {"LF": rgb, "names": np.array(["a", "b"], object)})
+            files.append("c.mat")
+        except ImportError:
+            pass
+        for name in files:
+            with self.subTest(name):
+                said = self.run_tool(IMPORT, self.folder / name, code=3).stderr.strip().splitlines()[-1]
+                call = said[said.rindex(": python3 ") + 2:].replace("python3", "/usr/bin/python3", 1)
+                subprocess.run(call, shell=True, check=True)
+                self.assert_same(self.frames(self.native(f"{name[0]}.npy")), expected)
 
     def test_every_way_to_a_film_takes_views(self):
         self.write("mosaic.png", self.mosaic())
@@ -191,9 +314,10 @@ class PicturesOfViewsTest(ProgramTestCase):
 
     def test_a_picture_prints_the_call_that_opens_it(self):
         self.write("a_qs4x3.png", self.mosaic())
-        self.write("plain.png", self.mosaic())
+        self.write("plain.png", self.views[0, 0])
         refused = self.run_tool(IMPORT, self.folder / "plain.png", code=3)
         self.assertIn("(lfimport --grid)", refused.stderr)
+        self.write("plain.png", self.mosaic())
         refused = self.run_tool(IMPORT, self.folder / "plain.png", "--grid", "5x3", *GEOMETRY, code=3)
         self.assertIn("cannot be divided into 5 x 3 views", refused.stderr)
         for name, *options in (("a_qs4x3.png", ), ("plain.png", "--grid", "4x3")):
@@ -205,6 +329,55 @@ class PicturesOfViewsTest(ProgramTestCase):
                 shell = call.replace(str(IMPORT), "lfimport", 1).replace("lfimport", str(IMPORT), 1)
                 self.assertEqual(subprocess.run(shell, shell=True, capture_output=True).returncode, 0, call)
                 self.frames((self.folder / name).with_suffix(""))
+
+    def scene(self, columns, rows, width, height):
+        """Views of a textured card before a wall: (rows, columns, height, width, 3)."""
+        noise = np.random.default_rng(5).integers(0, 200, (height + 40, width + 40, 3)).astype(np.uint8)
+        wall = cv2.GaussianBlur(noise, (0, 0), 1.5)
+        card = 80 + cv2.GaussianBlur(noise[::-1], (0, 0), 1) // 2
+        views = np.zeros((rows, columns, height, width, 3), np.uint8)
+        for row, column in np.ndindex(rows, columns):
+            views[row, column] = wall[20 + row:20 + row + height, 20 + column:20 + column + width]
+            y, x = height // 4 + 2 * row, width // 4 + 2 * column
+            views[row, column, y:y + height // 3, x:x + width // 3] = card[:height // 3, :width // 3]
+        return views
+
+    def test_a_picture_of_unknown_views_prints_the_call_that_opens_it(self):
+        for name, columns, rows, layout in (
+                ("scene_5x4.png", 5, 4, "mosaic"), ("scene.png", 5, 4, "mosaic"), ("plain_5x4.png", 5, 4, "lenslets"),
+                ("IMG_0001_eslf.png", 5, 5, "lenslets"), ("IMG_0002_eslf.png", 7, 7, "lenslets"),
+                ("lenslets.png", 9, 9, "lenslets"), ("scene_qs5x5a1.33.png", 5, 5, "mosaic")):
+            views = self.scene(columns, rows, 98 if "2_eslf" in name else 80, 70 if "2_eslf" in name else 60)
+            picture = (self.mosaic(views) if layout == "mosaic" else views.transpose(2, 0, 3, 1, 4).reshape(
+                rows * views.shape[2], columns * views.shape[3], 3))
+            folder = self.folder / f"of {name}"
+            folder.mkdir()
+            self.assertTrue(cv2.imwrite(str(folder / name), picture))
+            (folder / "README").write_text("views")
+            for given in (folder / name, folder):
+                for program, *rest in ((IMPORT, ), (RENDERER, self.folder / "path.yaml", "-o", self.folder / "f")):
+                    with self.subTest(name, given=given, program=program):
+                        done = self.run_tool(program, given, *rest, code=3)
+                        last = done.stderr.strip().splitlines()[-1]
+                        call = last[last.rindex(": ") + 2:]
+                        self.assertIn(f"--grid {columns}x{rows} --layout {layout} ", call)
+                        shell = call.replace(str(IMPORT), "lfimport", 1).replace("lfimport", str(IMPORT), 1)
+                        done = subprocess.run(shell, shell=True, capture_output=True, text=True)
+                        self.assertEqual(done.returncode, 0, (call, done.stderr))
+                        words = shlex.split(call)
+                        native = pathlib.Path(words[words.index("-o") + 1])
+                        content = json.loads((native / "transforms.json").read_text())
+                        self.assertEqual(len(content["frames"]), columns * rows)
+                        shutil.rmtree(folder / pathlib.Path(name).stem, ignore_errors=True)
+                        (folder / "transforms.json").unlink(missing_ok=True)
+
+    def test_a_picture_of_one_view_asks_for_its_columns_and_rows(self):
+        (self.folder / "one").mkdir()
+        self.write("one/photo.png", self.scene(1, 1, 400, 300)[0, 0])
+        for given in ("one", "one/photo.png"):
+            last = self.run_tool(IMPORT, self.folder / given, code=3).stderr.strip().splitlines()[-1]
+            self.assertIn("photo.png: is one image file: if it is a picture of many views, give their columns "
+                          "and rows (lfimport --grid)", last)
 
 
 if __name__ == "__main__":

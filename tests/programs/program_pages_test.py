@@ -190,14 +190,16 @@ class ProgramPagesTest(ProgramTestCase):
         self.assertEqual(self.completed("lffocus nonsense --"), set())
 
     def test_bash_completes_files_by_kind(self):
-        for name in ("a.lfp", "B.LFP", "c d.lfp", "e.lfs", "f.yaml", "g.json", "h.png", "i.mp4"):
+        for name in ("a.lfp", "B.LFP", "c d.lfp", "e.lfs", "f.yaml", "g.json", "h.png", "i.mp4", "v.npy", "w.h5",
+                     "x.webp"):
             (self.folder / name).write_text("")
         (self.folder / "deep").mkdir()
         (self.folder / "deep" / "k.lfs").write_text("")
         packages = {"a.lfp", "B.LFP", "c d.lfp"}
+        light_fields = {"e.lfs", "g.json", "h.png", "v.npy", "w.h5", "x.webp", "deep"}  # pictures and arrays of views
         self.assertEqual(self.completed("lfsubmit "), packages | {"deep"})
-        self.assertEqual(self.completed("lfrenderer "), packages | {"e.lfs", "f.yaml", "g.json", "deep"})
-        self.assertEqual(self.completed("lfrenderer --lightfield "), {"e.lfs", "g.json", "deep"})
+        self.assertEqual(self.completed("lfrenderer "), packages | light_fields | {"f.yaml"})
+        self.assertEqual(self.completed("lfrenderer --lightfield "), light_fields)
         self.assertEqual(self.completed("lfrenderer --lightfield deep/"), {"deep/k.lfs"})
         self.assertEqual(self.completed("lfrenderer --lightfield=deep/"), {"deep/k.lfs"})
         self.assertEqual(self.completed("lfrenderer f.yaml -o "), {"deep"})
@@ -206,7 +208,7 @@ class ProgramPagesTest(ProgramTestCase):
         self.assertEqual(self.completed("lfpath "), {"f.yaml", "g.json", "deep"})
         self.assertEqual(self.completed("lfsubmit --lfrenderer h"), {"h.png"})
         # The first argument is a light field, the second a path, the others are packages.
-        self.assertEqual(self.completed("lfvisualizer "), {"e.lfs", "g.json", "deep"})
+        self.assertEqual(self.completed("lfvisualizer "), light_fields)
         self.assertEqual(self.completed("lfvisualizer deep "), {"f.yaml", "g.json", "deep"})
         self.assertEqual(self.completed("lfvisualizer --seed 3 deep f.yaml "), packages | {"deep"})
         self.assertEqual(self.completed("lfvisualizer deep f.yaml a.lfp c"), {"c d.lfp"})

@@ -21,7 +21,13 @@ struct FileKind {
   bool folders;
 };
 constexpr std::array kFileKinds = {
-    FileKind{"light_field", ".lfs .json .txt .npy .cfg .sfm .out .nvm .xml .csv .xmp", true},
+    FileKind{
+        "light_field",
+        ".lfs .json .txt .npy .h5 .hdf5 .cfg .sfm .out .nvm .xml .csv .xmp "
+        // Pictures of many views.
+        ".png .jpg .jpeg .tif .tiff .exr .webp .jxl .heic .heif .avif .jp2 .j2k .bmp .ppm .pgm "
+        ".pbm .pnm .pam .hdr",
+        true},
     FileKind{"path", ".yaml .yml .json .chan", true},
     FileKind{"package", ".lfp", false},
     FileKind{"store", ".lfs", false},

@@ -254,6 +254,19 @@ Result<Mat3> RotationOfAxisAngle(const Vec3& axis_angle) {
                          kExportRotationTolerance);
 }
 
+std::optional<Intrinsics> IntrinsicsOfRows(const std::vector<double>& numbers) {
+  const std::vector<double>& m = numbers;
+  LF_CHECK(m.size() == 9);
+  if (m[3] != 0 || m[6] != 0 || m[7] != 0 || m[8] != 1) return std::nullopt;
+  Intrinsics k;
+  k.fx_px = m[0];
+  k.skew_px = m[1];
+  k.cx_px = m[2];
+  k.fy_px = m[4];
+  k.cy_px = m[5];
+  return k;
+}
+
 Result<Mat3> RotationOfRows(const std::vector<double>& numbers) {
   LF_CHECK(numbers.size() == 9);
   return NearestRotation(Mat3(Eigen::Matrix<double, 3, 3, Eigen::RowMajor>(numbers.data())),

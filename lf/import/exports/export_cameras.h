@@ -111,6 +111,10 @@ Result<Mat3> RotationOfAxisAngle(const Vec3& axis_angle);
 // Reads nine numbers row by row.
 Result<Mat3> RotationOfRows(const std::vector<double>& numbers);
 
+// Reads the calibration matrix fx skew cx, 0 fy cy, 0 0 1, row by row, without width and height.
+// nullopt if the other four numbers differ.
+std::optional<Intrinsics> IntrinsicsOfRows(const std::vector<double>& numbers);
+
 // Axes of OpenGL, x right, y up, z backwards, in camera axes of the library: diag(1, -1, -1).
 // cam_from_world = kFromOpenGl * opengl_from_world.
 inline Mat3 CameraFromOpenGl() { return Vec3(1, -1, -1).asDiagonal(); }

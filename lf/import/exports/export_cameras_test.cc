@@ -194,6 +194,18 @@ TEST_F(ExportFiles, AreFoundWhereverTheyLieWhenTheirSizesAreNeeded) {
   EXPECT_EQ(light_field->image_names[0], "images/a.png");
 }
 
+TEST(IntrinsicsOfRows, ReadsAMatrixRowByRow) {
+  const std::optional<Intrinsics> k = IntrinsicsOfRows({9, 1, 4, 0, 8, 3, 0, 0, 1});
+  ASSERT_TRUE(k);
+  EXPECT_EQ(k->fx_px, 9);
+  EXPECT_EQ(k->skew_px, 1);
+  EXPECT_EQ(k->cx_px, 4);
+  EXPECT_EQ(k->fy_px, 8);
+  EXPECT_EQ(k->cy_px, 3);
+  EXPECT_FALSE(IntrinsicsOfRows({9, 0, 0, 1, 8, 0, 4, 3, 1})) << "column by column";
+  EXPECT_FALSE(IntrinsicsOfRows({9, 1, 4, 0, 8, 3, 0, 0, 2}));
+}
+
 TEST(ExportedRotation, TurnsAboutTheAxis) {
   const Mat3 expected = Eigen::AngleAxisd(0.5, Vec3::UnitY()).toRotationMatrix();
   const Result<Mat3> by_axis = RotationOfAxisAngle({0, 0.5, 0});

@@ -120,6 +120,11 @@ std::vector<fs::path> FilesOf(const ExportForm& form, FilesByPattern* files) {
   return {};
 }
 
+// Returns the command of a form as the end of its advice; "" if it has none.
+std::string CommandOf(const ExportForm& form, const fs::path& file) {
+  return form.command == nullptr ? "" : ", for instance by: " + form.command(file);
+}
+
 }  // namespace
 
 const ExportForm* ExportFormOf(const fs::path& file) {
@@ -157,8 +162,8 @@ std::optional<Result<LightField>> OpenExportFile(const fs::path& file,
   const ExportForm* const form = ExportFormOf(file);
   if (form == nullptr) return std::nullopt;
   if (form->read == nullptr)
-    return InputError(fmt::format("{}: is not a light field, but {}: {}", file.string(), form->name,
-                                  form->advice));
+    return InputError(fmt::format("{}: is not a light field, but {}: {}{}", file.string(),
+                                  form->name, form->advice, CommandOf(*form, file)));
   LogDebug("{}: opened as {}", file.string(), form->name);
   return form->read(file, options);
 }
@@ -190,6 +195,7 @@ ExportAdvice AdviceOnExportsIn(const fs::path& folder) {
                                found[i].form->advice);
     advice.has_poses = advice.has_poses || found[i].form->has_poses;
   }
+  if (found.size() == 1) advice.command = CommandOf(*found[0].form, found[0].files[0]);
   return advice;
 }
 

@@ -46,6 +46,9 @@ struct ExportForm {
   // The way to a form that is read, as the end of a message: "export ... by the menu ...". Empty
   // for forms that are read.
   std::string_view advice = {};
+  // Returns the command that follows the advice, which then ends with "for instance by". nullptr:
+  // there is none.
+  std::string (*command)(const std::filesystem::path& file) = nullptr;
 };
 
 // Files of one form.
@@ -84,6 +87,9 @@ struct ExportAdvice {
   // forms are named. "" if there is none.
   std::string text;
   bool has_poses = false;  // true if one of these forms has poses (ExportForm::has_poses)
+  // ", for instance by: COMMAND" if only one form is there, and if it has a command; "" otherwise.
+  // Must end the message.
+  std::string command;
 };
 ExportAdvice AdviceOnExportsIn(const std::filesystem::path& folder);
 

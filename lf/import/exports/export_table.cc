@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rows of ExportForms(), apart from the functions that look for them.
+#include <fmt/format.h>
+
+#include "lf/core/shell_word.h"
 #include "lf/import/exports/export_forms.h"
 #include "lf/import/exports/read_bundler.h"
 #include "lf/import/exports/read_google_models.h"
@@ -21,6 +24,37 @@
 
 namespace lf {
 namespace {
+
+// Returns the command that saves the largest of several arrays as NAME.npy, which holds the views
+// in every file of this kind that we know.
+//   modules  that Python imports
+//   arrays   a Python expression for the arrays of the file sys.argv[1]
+std::string SaveLargest(const std::filesystem::path& file, std::string_view modules,
+                        std::string_view arrays) {
+  return ShellCommand({"python3", "-c",
+                       fmt::format("import sys, {}; numpy.save(sys.argv[2], max({}, key=lambda a: "
+                                   "a.size))",
+                                   modules, arrays),
+                       FileArgument(file),
+                       FileArgument(std::filesystem::path(file).replace_extension(".npy"))});
+}
+
+std::string SaveNpz(const std::filesystem::path& file) {
+  return SaveLargest(file, "numpy", "numpy.load(sys.argv[1]).values()");
+}
+
+std::string SaveMatlab(const std::filesystem::path& file) {
+  return SaveLargest(file, "numpy, scipy.io",
+                     "(numpy.ascontiguousarray(a) for a in scipy.io.loadmat(sys.argv[1]).values() "
+                     "if isinstance(a, numpy.ndarray))");
+}
+
+// Matlab's first index runs fastest, so that h5py sees the axes in the opposite order.
+std::string SaveMatlabHdf5(const std::filesystem::path& file) {
+  return SaveLargest(file, "h5py, numpy",
+                     "(numpy.ascontiguousarray(a[...].T) for a in h5py.File(sys.argv[1]).values() "
+                     "if isinstance(a, h5py.Dataset))");
+}
 
 // Adds the rows of forms that are read. A form whose files may lie beside those of another one,
 // from which they were made, comes after it.
@@ -208,8 +242,9 @@ void AddFormsThatAreNotRead(std::vector<ExportForm>* forms) {
       .name = "a project of RealityCapture or RealityScan, which is read only by these programs",
       .places = {"*.rcproj", "*.rsproj"},
       .has_poses = true,
-      .advice = "open it there, and save the cameras by Alignment > Export > Registration as "
-                "Bundler, COLMAP, or internal and external camera parameters (CSV or XMP)",
+      .advice = "open it there, and save the cameras by Registration (in RealityScan: Export "
+                "Registration), in the section Export of the tab ALIGNMENT, as Bundler, COLMAP or "
+                "internal and external camera parameters (CSV), or by Metadata (XMP) beside it",
   });
   forms->push_back({
       .name = "a project of Meshroom, which leads to the cameras but does not hold them",
@@ -258,18 +293,32 @@ void AddFormsThatAreNotRead(std::vector<ExportForm>* forms) {
       .advice = "export the photographs and their cameras from the program that made it",
   });
   forms->push_back({
-      .name = "an HDF5 file, which is not read",
+      .name = "an HDF5 file",
       .places = {"*.h5", "*.hdf5"},
       .words = {"\x89HDF\r\n\x1A\n"},
-      .has_poses = true,
-      .advice = "save its array of views (rows, columns, height, width, channels) by numpy.save() "
-                "as a .npy file, and give that",
+      .advice = "give its path if it holds the views of a grid of cameras",
   });
   forms->push_back({
-      .name = "an array of Matlab, which is not read",
+      .name = "a file of Matlab 7.3, which is not read",
       .places = {"*.mat"},
-      .advice = "write its views as image files by imwrite, with the names NAME_ROW_COL.png, and "
-                "give their folder",
+      .words = {"MATLAB 7.3 MAT-file"},
+      .advice = "if one of its arrays holds the views of a grid of cameras, save it as a file of "
+                "NumPy by h5py, and give that",
+      .command = SaveMatlabHdf5,
+  });
+  forms->push_back({
+      .name = "a file of Matlab, which is not read",
+      .places = {"*.mat"},
+      .advice = "if one of its arrays holds the views of a grid of cameras, save it as a file of "
+                "NumPy by SciPy, and give that",
+      .command = SaveMatlab,
+  });
+  forms->push_back({
+      .name = "an archive of arrays of NumPy, which is not read",
+      .places = {"*.npz"},
+      .advice = "if one of them holds the views of a grid of cameras, save it as a file of its "
+                "own, and give that",
+      .command = SaveNpz,
   });
   forms->push_back({
       .name = "a point cloud or a splat model, which holds no photographs with their poses",

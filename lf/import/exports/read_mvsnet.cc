@@ -44,15 +44,9 @@ Result<RigidTransform> MvsnetPose(ExportWords* words) {
 Result<Intrinsics> MvsnetIntrinsics(ExportWords* words) {
   LF_ASSIGN_OR_RETURN(const std::vector<double> m,
                       words->Numbers("the matrix of 3 x 3 numbers", 9, kMostMvsnetNumber));
-  if (m[3] != 0 || m[6] != 0 || m[7] != 0 || m[8] != 1)
-    return words->Fault("the matrix above is no K: expected fx skew cx, 0 fy cy, 0 0 1");
-  Intrinsics k;
-  k.fx_px = m[0];
-  k.skew_px = m[1];
-  k.cx_px = m[2];
-  k.fy_px = m[4];
-  k.cy_px = m[5];
-  return k;
+  const std::optional<Intrinsics> k = IntrinsicsOfRows(m);
+  if (!k) return words->Fault("the matrix above is no K: expected fx skew cx, 0 fy cy, 0 0 1");
+  return *k;
 }
 
 // Multiplies intrinsics that were stated for images of a quarter of the width and height.

@@ -62,7 +62,7 @@ struct CsvRow {
     if (!column)
       return InputError(fmt::format(
           "{}: has no column {}: export internal and external camera parameters, with a local or "
-          "projected coordinate system (Alignment > Export > Registration)",
+          "projected coordinate system (Registration, in the tab ALIGNMENT)",
           file.string(), fmt::join(names, " or ")));
     const std::string_view text = *column < fields.size() ? fields[*column] : "";
     const std::optional<double> number = ParseNumber(text);

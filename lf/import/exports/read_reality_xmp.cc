@@ -70,7 +70,7 @@ Result<Intrinsics> IntrinsicsIn(const XmlElement& element) {
     return element.Fault(fmt::format(
         "has the xcr:Skew {} and the xcr:AspectRatio {}: expected 0 and 1, because the "
         "meaning of other values is not documented; export undistorted images and their "
-        "XMP files instead (Alignment > Export > Registration)",
+        "XMP files instead (Registration, in the tab ALIGNMENT)",
         skew, aspect));
   LF_ASSIGN_OR_RETURN(k.distortion, DistortionIn(element));
   return k;

@@ -22,19 +22,16 @@ constexpr double kMostRecord3dNumber = 1e9;
 
 Result<Intrinsics> Record3dIntrinsics(const JsonValue& top) {
   constexpr int kMostSide_px = 65536;
-  Intrinsics k;
-  LF_ASSIGN_OR_RETURN(k.width_px, top.WholeAt("w", 1, kMostSide_px));
-  LF_ASSIGN_OR_RETURN(k.height_px, top.WholeAt("h", 1, kMostSide_px));
+  LF_ASSIGN_OR_RETURN(const int width_px, top.WholeAt("w", 1, kMostSide_px));
+  LF_ASSIGN_OR_RETURN(const int height_px, top.WholeAt("h", 1, kMostSide_px));
   LF_ASSIGN_OR_RETURN(const JsonValue matrix, top.At("K"));
   LF_ASSIGN_OR_RETURN(const std::vector<double> m, matrix.Numbers(9, kMostRecord3dNumber));
-  if (m[1] != 0 || m[2] != 0 || m[5] != 0 || m[8] != 1)
-    return matrix.Wrong("a calibration matrix, column by column: fx 0 0 skew fy 0 cx cy 1");
-  k.fx_px = m[0];
-  k.skew_px = m[3];
-  k.fy_px = m[4];
-  k.cx_px = m[6];
-  k.cy_px = m[7];
-  return k;
+  std::optional<Intrinsics> k =
+      IntrinsicsOfRows({m[0], m[3], m[6], m[1], m[4], m[7], m[2], m[5], m[8]});
+  if (!k) return matrix.Wrong("a calibration matrix, column by column: fx 0 0 skew fy 0 cx cy 1");
+  k->width_px = width_px;
+  k->height_px = height_px;
+  return *k;
 }
 
 // Reads qx qy qz qw x y z.

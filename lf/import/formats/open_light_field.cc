@@ -13,10 +13,12 @@
 #include <vector>
 
 #include "lf/core/log.h"
-#include "lf/core/shell_word.h"
 #include "lf/import/exports/export_forms.h"
 #include "lf/import/exports/import_limits.h"
 #include "lf/import/formats/complete_light_field.h"
+#include "lf/import/formats/folder_hints.h"
+#include "lf/import/formats/open_views.h"
+#include "lf/import/formats/option_checks.h"
 #include "lf/import/formats/picture_grid.h"
 #include "lf/import/formats/read_aos.h"
 #include "lf/import/formats/read_hci.h"
@@ -29,6 +31,7 @@
 #include "lf/light_field/model/brackets.h"
 #include "lf/light_field/model/image_files.h"
 #include "lf/light_field/transforms_json/transforms_json.h"
+#include "lf/pixels/files/hdf5_array.h"
 #include "lf/pixels/files/view_array.h"
 #include "lf/storage/packed/packed_store_file.h"
 
@@ -38,45 +41,6 @@ namespace {
 
 constexpr const char* kCalibrationName = "transforms.json";
 constexpr const char* kAosName = "poses.json";
-
-// Returns the first option in `options` that only folders with Stanford names accept, as messages
-// name it; "" if there is none.
-std::string_view StanfordOptionOf(const OpenOptions& options) {
-  if (options.focal_px) return "{focal_px}";
-  if (options.pitch_w) return "{pitch}";
-  if (options.grid) return "{grid}";
-  if (options.layout) return "{layout}";
-  if (options.plane_distance_w) return "{plane_distance}";
-  if (options.flip_x) return "{flip_x}";
-  if (options.flip_y) return "{flip_y}";
-  return "";
-}
-
-// Returns kUsage if an option is given that only folders with Stanford names accept.
-Result<void> CheckNoStanfordOptions(const fs::path& path, const OpenOptions& options) {
-  const std::string_view option = StanfordOptionOf(options);
-  if (option.empty()) return {};
-  return UsageError(fmt::format(
-      "{} is only for folders of images with Stanford names, which lack a part of the "
-      "calibration, but {} is a complete calibration: leave the option out, or give the "
-      "folder of the images",
-      option, path.string()));
-}
-
-Result<void> CheckNoFov(const fs::path& path, const OpenOptions& options) {
-  if (!options.fov_deg) return {};
-  return UsageError(
-      fmt::format("{{fov_deg}} is only for poses of Airborne Optical Sectioning, which lack the "
-                  "field of view; {} is of another kind: leave the option out",
-                  path.string()));
-}
-
-Result<void> CheckNoImagesFolder(const fs::path& path, const OpenOptions& options) {
-  if (!options.images_folder) return {};
-  return UsageError(fmt::format(
-      "{{images}} cannot be used with {}, which contains its own images: leave the option out",
-      path.string()));
-}
 
 Result<LightField> OpenAos(const fs::path& path, const OpenOptions& options) {
   LF_RETURN_IF_ERROR(CheckNoStanfordOptions(path, options));
@@ -214,112 +178,6 @@ Result<LightField> OpenColmap(const fs::path& model_folder, const OpenOptions& o
   return ReadColmapModel(model_folder, options.images_folder);
 }
 
-// Returns the options of a folder with Stanford names.
-//   asked_for  LIGHTFIELD as the user typed it
-StanfordOptions StanfordOptionsOf(const OpenOptions& options, const fs::path& asked_for) {
-  return {.grid = options.grid,
-          .is_serpentine = options.is_serpentine,
-          .focal_px = options.focal_px,
-          .pitch_w = options.pitch_w,
-          .plane_distance_w = options.plane_distance_w,
-          .flip_x = options.flip_x,
-          .flip_y = options.flip_y,
-          .asked_for = asked_for,
-          .import_again = options.import_again};
-}
-
-Result<LightField> OpenStanford(const fs::path& folder, const OpenOptions& options,
-                                const fs::path& asked_for) {
-  LF_RETURN_IF_ERROR(CheckNoFov(folder, options));
-  LF_RETURN_IF_ERROR(CheckNoImagesFolder(folder, options));
-  LogDebug("{}: opened as images with Stanford names", folder.string());
-  return ReadStanfordFolder(folder, StanfordOptionsOf(options, asked_for));
-}
-
-// Returns a hint for a folder that holds photographs but no calibration; "" for other folders.
-std::string PhotographsIn(const fs::path& path) {
-  constexpr size_t kMostEntries = 4096;
-  for (const fs::path& folder : {path, path / kImagesName}) {
-    size_t count = 0, entry_count = 0;
-    std::string first;
-    std::error_code error;
-    for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-      if (++entry_count > kMostEntries) break;
-      const std::string name = it->path().filename().string();
-      if (!IsImageName(name)) continue;
-      ++count;
-      if (first.empty() || name < first) first = name;
-    }
-    if (count > 1)
-      return fmt::format(
-          "; {} holds {}{} images, such as {}, but no file with the poses of the cameras: "
-          "reconstruct the poses first, for instance with COLMAP (colmap automatic_reconstructor), "
-          "which writes sparse/0; or, if a regular grid of cameras recorded them in the order of "
-          "their names, give its columns and rows ({{lfimport grid}})",
-          folder.string(), entry_count > kMostEntries ? "at least " : "", count, first);
-  }
-  return "";
-}
-
-// Returns a hint that names up to five subfolders that hold a light field, and ends with the
-// command for the first of them; "" if there are none.
-std::string LightFieldsBelow(const fs::path& folder) {
-  constexpr size_t kMostNames = 5;
-  std::vector<std::string> names;
-  std::error_code error;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    std::error_code ignored;
-    if (names.size() < kMostNames && it->is_directory(ignored) && HoldsLightField(it->path()))
-      names.push_back(it->path().filename().string());
-  }
-  if (names.empty()) return "";
-  std::sort(names.begin(), names.end());
-  return fmt::format("; but there is a light field in {}/: {}", fmt::join(names, "/, "),
-                     ShellCommand({"lfimport", FileArgument(folder / names[0])}));
-}
-
-// Opens a picture that holds the views of a grid of cameras.
-//   asked_for  the picture, or its folder, as the user typed it
-Result<LightField> OpenPicture(const fs::path& path, const OpenOptions& options,
-                               const fs::path& asked_for) {
-  std::optional<PictureGrid> grid = PictureGridOfName(path.filename().string());
-  if (options.layout && (!grid || grid->layout != *options.layout))
-    grid = PictureGrid{.layout = *options.layout, .grid = {0, 0}};
-  if (options.grid) {
-    if (!grid) grid.emplace();
-    grid->grid = *options.grid;
-  }
-  if (!grid || grid->grid[0] < 1 || grid->grid[1] < 1)
-    return InputError(fmt::format(
-        "{}: is a picture: if it holds the views of a grid of cameras, give their columns and rows "
-        "({{lfimport grid}}), and {{lfimport layout}} if they do not lie side by side",
-        path.string()));
-  LF_RETURN_IF_ERROR(CheckNoFov(path, options));
-  LF_RETURN_IF_ERROR(CheckNoImagesFolder(path, options));
-  LogDebug("{}: opened as a picture of {} x {} views ({})", path.string(), grid->grid[0],
-           grid->grid[1], NameOf(grid->layout));
-  StanfordOptions picture = StanfordOptionsOf(options, asked_for);
-  picture.picture = path.filename().string();
-  picture.picture_grid = *grid;
-  return ReadStanfordFolder(path.parent_path(), picture);
-}
-
-// Opens an array of views, which states its rows and columns.
-Result<LightField> OpenArray(const fs::path& path, const OpenOptions& options) {
-  LF_RETURN_IF_ERROR(CheckNoFov(path, options));
-  LF_RETURN_IF_ERROR(CheckNoImagesFolder(path, options));
-  if (options.grid || options.layout)
-    return UsageError(fmt::format(
-        "{}: {} is an array, which states the rows and columns of its views: leave the option out",
-        options.grid ? "{grid}" : "{layout}", path.string()));
-  LF_ASSIGN_OR_RETURN(const ViewArray array, ReadViewArray(path));
-  LogDebug("{}: opened as an array of {} x {} views", path.string(), array.columns, array.rows);
-  StanfordOptions views = StanfordOptionsOf(options, path);
-  views.picture = path.filename().string();
-  views.picture_grid = {.layout = PictureLayout::kArray, .grid = {array.columns, array.rows}};
-  return ReadStanfordFolder(path.parent_path(), views);
-}
-
 bool HoldsImages(const fs::path& folder) {
   const Result<std::vector<std::string>> names = SortedImageNames(folder);
   return names && !names->empty();
@@ -393,6 +251,14 @@ std::optional<Result<LightField>> OpenOwnForm(const fs::path& path, const OpenOp
     return InputError(fmt::format(
         "{}: holds several packed stores, such as {} and {}: give the path of one of them",
         path.string(), stores[0].filename().string(), stores[1].filename().string()));
+  if (const std::optional<fs::path> array = ArrayIn(path)) return OpenArray(*array, options, path);
+  return std::nullopt;
+}
+
+// Returns the only image in a folder or its images/; nullopt if there are several, or none.
+std::optional<fs::path> OnlyPictureIn(const fs::path& path) {
+  for (const fs::path& folder : {path, path / kImagesName})
+    if (std::optional<fs::path> picture = PictureOfViewsIn(folder, /*is_any=*/true)) return picture;
   return std::nullopt;
 }
 
@@ -408,8 +274,14 @@ Result<LightField> OpenFolder(const fs::path& path, const OpenOptions& options) 
     const ExportAdvice advice = AdviceOnExportsIn(path);
     // Nobody is told to reconstruct poses that are there, or of all the forms that are not there.
     if (advice.has_poses)
-      return InputError(fmt::format("{}: holds no light field{}", path.string(), advice.text));
-    hint = advice.text + PhotographsIn(path) + series;
+      return InputError(
+          fmt::format("{}: holds no light field{}{}", path.string(), advice.text, advice.command));
+    hint = PhotographsIn(path) + series;
+    if (hint.empty() && advice.text.empty())
+      if (const std::optional<fs::path> picture = OnlyPictureIn(path))
+        return OpenPicture(*picture, options, path);
+    // A command must end the message.
+    hint = advice.text + (hint.empty() ? advice.command : hint);
   }
   return InputError(fmt::format(
       "{}: holds no light field: looked for {}, a COLMAP model in it or in sparse/0, NAME_par.txt, "
@@ -428,7 +300,8 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
   if (!fs::exists(status))
     return InputError(fmt::format("{}: no such file or folder", path.string()));
   if (fs::is_directory(status)) return OpenFolder(path, options);
-  if (path.extension() == ".npy" && HoldsViewArray(path)) return OpenArray(path, options);
+  if (HasHdf5Name(path) || (path.extension() == ".npy" && HoldsViewArray(path)))
+    return OpenArray(path, options, path);
   if (std::optional<Result<LightField>> opened = OpenFile(path, options)) return *opened;
   if (IsImageName(path.filename().string())) return OpenPicture(path, options, path);
   return InputError(
@@ -469,7 +342,8 @@ bool HoldsLightField(const fs::path& folder) {
   if (model && *model) return true;
   const Result<std::optional<fs::path>> calibration = CalibrationIn(folder);
   return !calibration || *calibration || !SplitsIn(folder).empty() || HoldsGrid(folder) ||
-         !PackedStoresIn(folder).empty() || !ExportsIn(folder, /*reads=*/true).empty();
+         ArrayIn(folder) || !PackedStoresIn(folder).empty() ||
+         !ExportsIn(folder, /*reads=*/true).empty();
 }
 
 bool HoldsOwnAndItsSource(const fs::path& folder, bool has_grid) {
@@ -480,7 +354,7 @@ bool HoldsOwnAndItsSource(const fs::path& folder, bool has_grid) {
   const Result<std::optional<fs::path>> model = FindColmapModel(folder);
   if (model && *model) return true;
   if (has_grid && (HoldsImages(folder) || HoldsImages(folder / kImagesName))) return true;
-  if (PictureOfViewsIn(folder, false)) return true;
+  if (PictureOfViewsIn(folder, false) || ArrayIn(folder)) return true;
   const Result<std::optional<fs::path>> other = OtherCalibrationIn(folder);
   return (other && *other) || !SplitsIn(folder).empty() || HoldsGrid(folder) ||
          !ExportsIn(folder, /*reads=*/true).empty();

@@ -80,7 +80,8 @@ bool HoldsOwnAndItsSource(const std::filesystem::path& folder, bool has_grid = f
 // - poses.json, or any .json file with M3x4 matrices: import/formats/read_aos.h
 // - transforms_train.json, transforms_val.json and transforms_test.json: their union
 // - images with Stanford names, in the folder or its images/: import/formats/read_stanford.h
-// - a .npy file of four or five dimensions: pixels/files/view_array.h
+// - a .npy file of four or five dimensions, or an HDF5 file, also as the only one in a folder:
+//   pixels/files/view_array.h, import/formats/hci_archive.h
 // - a picture that holds the views of a grid of cameras, or a folder with one picture whose name
 // says
 //   so: import/formats/picture_grid.h

@@ -77,6 +77,11 @@ std::optional<fs::path> PictureOfViewsIn(const fs::path& folder, bool is_any) {
   return folder / (*names)[0];
 }
 
+Result<bool> CanBeDivided(const fs::path& picture, const PictureGrid& grid) {
+  LF_ASSIGN_OR_RETURN(const ImageFileInfo info, ReadImageInfo(picture));
+  return info.width % grid.grid[0] == 0 && info.height % grid.grid[1] == 0;
+}
+
 Result<std::vector<ViewOfPicture>> ViewsOfPicture(const fs::path& picture,
                                                   const PictureGrid& grid) {
   const auto [columns, rows] = grid.grid;

@@ -47,6 +47,10 @@ std::optional<PictureGrid> PictureGridOfName(std::string_view file_name);
 std::optional<std::filesystem::path> PictureOfViewsIn(const std::filesystem::path& folder,
                                                       bool is_any);
 
+// Returns true if the width and height of a picture are multiples of the columns and rows. kInput:
+// errors of ReadImageInfo().
+Result<bool> CanBeDivided(const std::filesystem::path& picture, const PictureGrid& grid);
+
 // The path of a view, relative to the folder of its picture, and the place of its camera.
 struct ViewOfPicture {
   std::string name;

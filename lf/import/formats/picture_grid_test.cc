@@ -61,12 +61,14 @@ TEST_F(PictureGridTest, OtherPicturesNeedAGrid) {
     const Result<LightField> opened = OpenLightField(folder_ / "a.png", options);
     return opened ? std::string() : opened.error().message;
   };
-  EXPECT_NE(message_of({}).find("is a picture: if it holds the views"), std::string::npos);
-  EXPECT_NE(message_of({.layout = PictureLayout::kQuilt}).find("is a picture: if"),
+  EXPECT_NE(message_of({}).find("is one image file: if it is a picture"), std::string::npos);
+  // Black pixels show no views.
+  EXPECT_NE(message_of({.layout = PictureLayout::kQuilt}).find("is one image file: if"),
             std::string::npos);
   EXPECT_NE(message_of({.grid = std::array{3, 2}}).find("cannot be divided into 3 x 2 views"),
             std::string::npos);
-  EXPECT_NE(message_of({.grid = std::array{2, 2}}).find("state the pitch"), std::string::npos);
+  EXPECT_NE(message_of({.grid = std::array{2, 2}}).find("no distance from one camera"),
+            std::string::npos);
   EXPECT_EQ(message_of({.focal_px = 9, .pitch_w = Vec2(1, 1), .grid = std::array{2, 2}}), "");
 }
 

@@ -170,8 +170,11 @@ std::string ImportCommand(const fs::path& folder, const std::vector<StanfordImag
   if (options.grid && !options.import_again)
     missing = {"--grid", fmt::format("{}x{}", (*options.grid)[0], (*options.grid)[1])};
   if (options.is_serpentine && !options.import_again) missing.push_back("--serpentine");
+  if (options.is_guess)
+    missing = {"--grid",
+               fmt::format("{}x{}", options.picture_grid.grid[0], options.picture_grid.grid[1])};
   if (!options.picture.empty() && options.picture_grid.layout != PictureLayout::kArray &&
-      !options.import_again)
+      (options.is_guess || !options.import_again))
     missing.insert(missing.end(), {"--layout", NameOf(options.picture_grid.layout)});
   if (needs_pitch && !(options.pitch_w && options.import_again)) {
     const Vec2 pitch_w = options.pitch_w.value_or(Vec2(1, 1));
@@ -233,16 +236,29 @@ Result<void> CheckOptions(const StanfordOptions& options) {
 // Returns kInput unless the names and the options together state all positions and focal lengths.
 Result<void> CheckComplete(const fs::path& folder, const std::vector<StanfordImage>& images,
                            const StanfordOptions& options, int width_px) {
+  if (options.is_guess)
+    return InputError(fmt::format(
+        "{}: is one image file: if it is a picture of many views, state them by {{lfimport grid}} "
+        "COLUMNSxROWS and {{lfimport layout}} mosaic|quilt|lenslets, for instance, as its name or "
+        "its pixels tell, by: {}",
+        (folder / options.picture).string(),
+        ImportCommand(folder, images, options, true, width_px)));
+  if (!options.picture.empty() && (!options.pitch_w || !options.focal_px))
+    return InputError(fmt::format(
+        "{}: has rows and columns of views, but states no {}: state it, and {{plane_distance}} if "
+        "the views may be rectified to one plane, for instance by: {}",
+        (folder / options.picture).string(),
+        options.pitch_w    ? "focal length in pixels"
+        : options.focal_px ? "distance from one camera to the next"
+                           : "distance from one camera to the next and no focal length",
+        ImportCommand(folder, images, options, true, width_px)));
   if (!options.pitch_w && !images[0].name.position)
     return InputError(fmt::format(
         "{}: the names {}, but neither positions nor the focal length ({}): "
         "state the pitch and the focal length, and {{plane_distance}} if the images may be "
         "rectified "
         "to one plane, for instance by: {}",
-        folder.string(),
-        !options.picture.empty() ? "of its views contain row and column"
-        : options.grid           ? "follow the order of the grid"
-                                 : "contain row and column",
+        folder.string(), options.grid ? "follow the order of the grid" : "contain row and column",
         images[0].file_name, ImportCommand(folder, images, options, true, width_px)));
   if (options.focal_px) return {};
   const auto lacks_lens = [](const StanfordImage& image) { return !image.name.lens; };

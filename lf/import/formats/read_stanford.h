@@ -51,6 +51,8 @@ struct StanfordOptions {
   // interleaved; its columns and rows replace those of `grid`.
   std::string picture = {};  // the name of its file; empty: each LF image has a file of its own
   PictureGrid picture_grid = {};
+  // picture_grid was guessed: the picture is not read, but kInput names the command that reads it.
+  bool is_guess = false;
   bool is_serpentine = false;  // every second row of `grid` was recorded from right to left
   std::optional<double> focal_px = {};  // focal length of all cameras; overrides the file names
   // Distance from one column (x), and from one row (y), to the next; overrides positions in the
@@ -81,7 +83,7 @@ struct StanfordOptions {
 // another number of images than the grid has; two images with the same row and column; names that
 // lack the position or the focal length (the message contains the lfimport command that adds it); a
 // focal length in only some of the names, or out of range; a position beyond 1e12 world units; an
-// unreadable first image.
+// unreadable first image; a picture whose grid was guessed.
 Result<LightField> ReadStanfordFolder(const std::filesystem::path& folder,
                                       const StanfordOptions& options = {});
 

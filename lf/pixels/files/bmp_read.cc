@@ -15,8 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "lf/pixels/files/picture_decoder.h"
-#include "lf/pixels/files/rows_in_file.h"
+#include "lf/pixels/files/rows_decoder.h"
 
 namespace lf {
 namespace {
@@ -171,9 +170,9 @@ class BmpParser {
   BmpHead head_;
 };
 
-class BmpDecoder : public PictureDecoder {
+class BmpDecoder : public RowsDecoder {
  public:
-  BmpDecoder(const FileBytes& file, BmpHead head) : file_(file), head_(std::move(head)) {
+  BmpDecoder(const FileBytes& file, BmpHead head) : RowsDecoder(file), head_(std::move(head)) {
     const auto is_grey = [](const std::array<uint8_t, 3>& c) {
       return c[0] == c[1] && c[1] == c[2];
     };
@@ -192,9 +191,6 @@ class BmpDecoder : public PictureDecoder {
              info_.height, !head_.is_top_down};
   }
 
-  const ImageFileInfo& info() const override { return info_; }
-  const RowsInFile& rows() const { return rows_; }
-
   std::string IccProfile() const override {
     std::string profile(head_.profile_bytes, '\0');
     const size_t count = file_.read(head_.profile_begin,
@@ -202,15 +198,7 @@ class BmpDecoder : public PictureDecoder {
     return count == profile.size() ? profile : "";
   }
 
-  bool has_rows_on_disk() const override { return true; }
-
-  Result<void> Read(StoredImage* image) override {
-    const Result<PixelRect> rect = ReadPart({0, 0, info_.width, info_.height}, image);
-    return rect ? Result<void>() : rect.error();
-  }
-
-  Result<PixelRect> ReadPart(const PixelRect& wanted, StoredImage* image) override {
-    const PixelRect rect = Intersection(wanted, {0, 0, info_.width, info_.height});
+  Result<PixelRect> ReadRect(const PixelRect& rect, StoredImage* image) override {
     Image<uint8_t>& pixels = Resized<uint8_t>(rect.width(), rect.height(), info_.channels, image);
     uint32_t largest_index = 0;
     LF_RETURN_IF_ERROR(
@@ -248,10 +236,7 @@ class BmpDecoder : public PictureDecoder {
     return 0;
   }
 
-  const FileBytes& file_;
   const BmpHead head_;
-  ImageFileInfo info_;
-  RowsInFile rows_;
 };
 
 }  // namespace

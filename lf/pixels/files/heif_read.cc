@@ -227,9 +227,7 @@ class HeifDecoder : public PictureDecoder {
 Result<std::unique_ptr<PictureDecoder>> OpenHeif(const FileBytes& file) {
   if (!Heif().library.has_all())
     return MissingAtRunTime(file.name, "HEIF", LF_HEIF_LIBRARY_NAME, "libheif1");
-  auto decoder = std::make_unique<HeifDecoder>(file);
-  LF_RETURN_IF_ERROR(decoder->Open());
-  return std::unique_ptr<PictureDecoder>(std::move(decoder));
+  return Opened<HeifDecoder>(file);
 }
 
 }  // namespace lf

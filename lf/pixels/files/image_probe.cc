@@ -199,8 +199,7 @@ std::string_view NameOfForeign(std::span<const uint8_t> start) {
       {0, "\x89LFP\r\n\x1a\n"sv,
        "a picture of a Lytro camera: decode it with plenopticam or LFToolbox, which write a folder "
        "of views"sv},
-      {0, "\x89HDF\r\n\x1a\n"sv,
-       "an HDF5 file: save its views as images, or as an array of NumPy (.npy)"sv},
+      {0, "\x89HDF\r\n\x1a\n"sv, "an HDF5 file: give it as LIGHTFIELD if it holds views"sv},
       {0, "\x93NUMPY"sv, "a NumPy file: give it as LIGHTFIELD if it holds views"sv},
       {4, "ftyp"sv, kVideo},
       {4, "moov"sv, kVideo},

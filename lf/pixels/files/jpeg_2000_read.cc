@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads JPEG 2000 files (JP2 and bare codestreams) by OpenJPEG.
+// Reads JPEG 2000 files (JP2 and bare codestreams) by OpenJPEG, which is loaded when the first such
+// file is read.
 #include <fmt/format.h>
 
 #include "lf/pixels/files/picture_decoder.h"
 
-#ifdef LF_HAS_OPENJPEG
+#ifdef LF_OPENJPEG_LIBRARY_NAME
 #include <openjpeg.h>
 
 #include <algorithm>
@@ -14,17 +15,46 @@
 #include <string>
 #include <vector>
 
+#include "lf/pixels/files/loaded_library.h"
+
 namespace lf {
 namespace {
 
+struct OpenJpegCalls {
+  LoadedLibrary library{LF_OPENJPEG_LIBRARY_NAME};
+  LF_LOADED(opj_create_decompress);
+  LF_LOADED(opj_decode);
+  LF_LOADED(opj_destroy_codec);
+  LF_LOADED(opj_end_decompress);
+  LF_LOADED(opj_image_destroy);
+  LF_LOADED(opj_read_header);
+  LF_LOADED(opj_set_default_decoder_parameters);
+  LF_LOADED(opj_set_error_handler);
+  LF_LOADED(opj_set_info_handler);
+  LF_LOADED(opj_set_warning_handler);
+  LF_LOADED(opj_setup_decoder);
+  LF_LOADED(opj_stream_default_create);
+  LF_LOADED(opj_stream_destroy);
+  LF_LOADED(opj_stream_set_read_function);
+  LF_LOADED(opj_stream_set_seek_function);
+  LF_LOADED(opj_stream_set_skip_function);
+  LF_LOADED(opj_stream_set_user_data);
+  LF_LOADED(opj_stream_set_user_data_length);
+};
+
+const OpenJpegCalls& OpenJpeg() {
+  static const OpenJpegCalls calls;
+  return calls;
+}
+
 struct DestroyCodec {
-  void operator()(opj_codec_t* codec) const { opj_destroy_codec(codec); }
+  void operator()(opj_codec_t* codec) const { OpenJpeg().opj_destroy_codec(codec); }
 };
 struct DestroyStream {
-  void operator()(opj_stream_t* stream) const { opj_stream_destroy(stream); }
+  void operator()(opj_stream_t* stream) const { OpenJpeg().opj_stream_destroy(stream); }
 };
 struct DestroyImage {
-  void operator()(opj_image_t* image) const { opj_image_destroy(image); }
+  void operator()(opj_image_t* image) const { OpenJpeg().opj_image_destroy(image); }
 };
 
 class Jpeg2000Decoder : public PictureDecoder {
@@ -40,30 +70,31 @@ class Jpeg2000Decoder : public PictureDecoder {
   Result<void> Open() {
     const std::string start = StartOf(file_, 4);
     const bool is_bare = start.starts_with("\xff\x4f");
-    codec_.reset(opj_create_decompress(is_bare ? OPJ_CODEC_J2K : OPJ_CODEC_JP2));
-    stream_.reset(opj_stream_default_create(OPJ_TRUE));
+    codec_.reset(OpenJpeg().opj_create_decompress(is_bare ? OPJ_CODEC_J2K : OPJ_CODEC_JP2));
+    stream_.reset(OpenJpeg().opj_stream_default_create(OPJ_TRUE));
     if (!codec_ || !stream_) throw std::bad_alloc();
-    opj_set_error_handler(codec_.get(), KeepMessage, this);
-    opj_set_warning_handler(codec_.get(), IgnoreMessage, nullptr);
-    opj_set_info_handler(codec_.get(), IgnoreMessage, nullptr);
-    opj_stream_set_read_function(stream_.get(), ReadBytes);
-    opj_stream_set_skip_function(stream_.get(), SkipBytes);
-    opj_stream_set_seek_function(stream_.get(), Seek);
-    opj_stream_set_user_data(stream_.get(), this, nullptr);
-    opj_stream_set_user_data_length(stream_.get(), file_.size_bytes);
+    OpenJpeg().opj_set_error_handler(codec_.get(), KeepMessage, this);
+    OpenJpeg().opj_set_warning_handler(codec_.get(), IgnoreMessage, nullptr);
+    OpenJpeg().opj_set_info_handler(codec_.get(), IgnoreMessage, nullptr);
+    OpenJpeg().opj_stream_set_read_function(stream_.get(), ReadBytes);
+    OpenJpeg().opj_stream_set_skip_function(stream_.get(), SkipBytes);
+    OpenJpeg().opj_stream_set_seek_function(stream_.get(), Seek);
+    OpenJpeg().opj_stream_set_user_data(stream_.get(), this, nullptr);
+    OpenJpeg().opj_stream_set_user_data_length(stream_.get(), file_.size_bytes);
     opj_dparameters_t parameters;
-    opj_set_default_decoder_parameters(&parameters);
-    if (opj_setup_decoder(codec_.get(), &parameters) == OPJ_FALSE) return Damaged();
+    OpenJpeg().opj_set_default_decoder_parameters(&parameters);
+    if (OpenJpeg().opj_setup_decoder(codec_.get(), &parameters) == OPJ_FALSE) return Damaged();
     opj_image_t* image = nullptr;
-    const bool has_head = opj_read_header(stream_.get(), codec_.get(), &image) == OPJ_TRUE;
+    const bool has_head =
+        OpenJpeg().opj_read_header(stream_.get(), codec_.get(), &image) == OPJ_TRUE;
     image_.reset(image);
     if (!has_head) return Damaged();
     return ReadHeader();
   }
 
   Result<void> Read(StoredImage* image) override {
-    if (opj_decode(codec_.get(), stream_.get(), image_.get()) == OPJ_FALSE ||
-        opj_end_decompress(codec_.get(), stream_.get()) == OPJ_FALSE)
+    if (OpenJpeg().opj_decode(codec_.get(), stream_.get(), image_.get()) == OPJ_FALSE ||
+        OpenJpeg().opj_end_decompress(codec_.get(), stream_.get()) == OPJ_FALSE)
       return Damaged();
     if (image_->numcomps != static_cast<OPJ_UINT32>(info_.channels))
       return InputError(fmt::format(
@@ -179,9 +210,9 @@ class Jpeg2000Decoder : public PictureDecoder {
 }  // namespace
 
 Result<std::unique_ptr<PictureDecoder>> OpenJpeg2000(const FileBytes& file) {
-  auto decoder = std::make_unique<Jpeg2000Decoder>(file);
-  LF_RETURN_IF_ERROR(decoder->Open());
-  return std::unique_ptr<PictureDecoder>(std::move(decoder));
+  if (!OpenJpeg().library.has_all())
+    return MissingAtRunTime(file.name, "JPEG 2000", LF_OPENJPEG_LIBRARY_NAME, "libopenjp2-7");
+  return Opened<Jpeg2000Decoder>(file);
 }
 
 }  // namespace lf

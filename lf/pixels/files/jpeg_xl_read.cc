@@ -219,9 +219,7 @@ class JpegXlDecoder : public PictureDecoder {
 Result<std::unique_ptr<PictureDecoder>> OpenJpegXl(const FileBytes& file) {
   if (!Jxl().library.has_all())
     return MissingAtRunTime(file.name, "JPEG XL", LF_JXL_LIBRARY_NAME, "libjxl0.7");
-  auto decoder = std::make_unique<JpegXlDecoder>(file);
-  LF_RETURN_IF_ERROR(decoder->Open());
-  return std::unique_ptr<PictureDecoder>(std::move(decoder));
+  return Opened<JpegXlDecoder>(file);
 }
 
 }  // namespace lf

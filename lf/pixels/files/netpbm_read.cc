@@ -11,8 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lf/pixels/files/picture_decoder.h"
-#include "lf/pixels/files/rows_in_file.h"
+#include "lf/pixels/files/rows_decoder.h"
 #include "lf/pixels/files/text_head.h"
 
 namespace lf {
@@ -87,9 +86,9 @@ std::optional<NetpbmHead> ParseHead(std::string_view start) {
   return head;
 }
 
-class NetpbmDecoder : public PictureDecoder {
+class NetpbmDecoder : public RowsDecoder {
  public:
-  NetpbmDecoder(const FileBytes& file, const NetpbmHead& head) : file_(file), head_(head) {
+  NetpbmDecoder(const FileBytes& file, const NetpbmHead& head) : RowsDecoder(file), head_(head) {
     info_.width = static_cast<int>(head.width);
     info_.height = static_cast<int>(head.height);
     info_.channels = static_cast<int>(head.channels);
@@ -104,18 +103,9 @@ class NetpbmDecoder : public PictureDecoder {
         info_.height, false};
   }
 
-  const ImageFileInfo& info() const override { return info_; }
-  const RowsInFile& rows() const { return rows_; }
-
   bool has_rows_on_disk() const override { return !head_.is_plain; }
 
-  Result<void> Read(StoredImage* image) override {
-    const Result<PixelRect> rect = ReadPart({0, 0, info_.width, info_.height}, image);
-    return rect ? Result<void>() : rect.error();
-  }
-
-  Result<PixelRect> ReadPart(const PixelRect& wanted, StoredImage* image) override {
-    const PixelRect rect = Intersection(wanted, {0, 0, info_.width, info_.height});
+  Result<PixelRect> ReadRect(const PixelRect& rect, StoredImage* image) override {
     if (info_.bits == 8) return ReadValues<uint8_t>(rect, image);
     return ReadValues<uint16_t>(rect, image);
   }
@@ -189,10 +179,7 @@ class NetpbmDecoder : public PictureDecoder {
     return {};
   }
 
-  const FileBytes& file_;
   const NetpbmHead head_;
-  ImageFileInfo info_;
-  RowsInFile rows_;
 };
 
 }  // namespace

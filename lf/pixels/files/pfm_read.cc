@@ -12,34 +12,23 @@
 #include <vector>
 
 #include "lf/core/parse_number.h"
-#include "lf/pixels/files/picture_decoder.h"
-#include "lf/pixels/files/rows_in_file.h"
+#include "lf/pixels/files/rows_decoder.h"
 #include "lf/pixels/files/text_head.h"
 
 namespace lf {
 namespace {
 
-class PfmDecoder : public PictureDecoder {
+class PfmDecoder : public RowsDecoder {
  public:
   PfmDecoder(const FileBytes& file, const ImageFileInfo& info, uint64_t begin, bool is_big_endian)
-      : file_(file), info_(info), is_big_endian_(is_big_endian) {
+      : RowsDecoder(file), is_big_endian_(is_big_endian) {
+    info_ = info;
     const auto row_values =
         static_cast<uint64_t>(info.width) * static_cast<uint64_t>(info.channels);
     rows_ = {begin, row_values * sizeof(float), info.height, true};
   }
 
-  const ImageFileInfo& info() const override { return info_; }
-  const RowsInFile& rows() const { return rows_; }
-
-  bool has_rows_on_disk() const override { return true; }
-
-  Result<void> Read(StoredImage* image) override {
-    const Result<PixelRect> rect = ReadPart({0, 0, info_.width, info_.height}, image);
-    return rect ? Result<void>() : rect.error();
-  }
-
-  Result<PixelRect> ReadPart(const PixelRect& wanted, StoredImage* image) override {
-    const PixelRect rect = Intersection(wanted, {0, 0, info_.width, info_.height});
+  Result<PixelRect> ReadRect(const PixelRect& rect, StoredImage* image) override {
     Image<float>& pixels = Resized<float>(rect.width(), rect.height(), info_.channels, image);
     const auto channels = static_cast<size_t>(info_.channels);
     const size_t begin = static_cast<size_t>(rect.x_begin) * channels;
@@ -58,10 +47,7 @@ class PfmDecoder : public PictureDecoder {
   }
 
  private:
-  const FileBytes& file_;
-  const ImageFileInfo info_;
   const bool is_big_endian_;
-  RowsInFile rows_;
 };
 
 }  // namespace

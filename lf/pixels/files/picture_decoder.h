@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "lf/core/result.h"
 #include "lf/pixels/files/file_bytes.h"
@@ -55,6 +56,14 @@ class PictureDecoder {
     return PixelRect{0, 0, info().width, info().height};
   }
 };
+
+// Returns a decoder whose Open() has read the header.
+template <class Decoder>
+Result<std::unique_ptr<PictureDecoder>> Opened(const FileBytes& file) {
+  auto decoder = std::make_unique<Decoder>(file);
+  LF_RETURN_IF_ERROR(decoder->Open());
+  return std::unique_ptr<PictureDecoder>(std::move(decoder));
+}
 
 // These functions read the header. `file` must outlive the decoder, and must have passed
 // ProbeImage(). kInput: the file is truncated or damaged, is larger than ReadImage() allows, or is

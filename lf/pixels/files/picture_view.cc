@@ -13,6 +13,7 @@
 #include <utility>
 #include <variant>
 
+#include "lf/pixels/files/hdf5_array.h"
 #include "lf/pixels/files/rows_on_disk.h"
 #include "lf/pixels/files/view_array.h"
 
@@ -246,7 +247,10 @@ Result<void> ReadViewPart(const PictureView& view, const WantedPixels& wanted, I
 }
 
 size_t SharedPictureBytes(const PictureView& view) {
-  if (view.is_of_array) return 0;
+  if (view.is_of_array) {
+    const Result<ViewArray> array = ReadViewArray(view.file);
+    return array ? array->cache_bytes : 0;
+  }
   const Result<ImageFileInfo> info = ReadImageInfo(view.file);
   const Result<bool> is_on_disk = HasRowsOnDisk(view.file);
   if (!info || !is_on_disk || *is_on_disk) return 0;
@@ -257,6 +261,9 @@ size_t SharedPictureBytes(const PictureView& view) {
          (error ? 0 : file_bytes);
 }
 
-void ForgetSharedPicture() { Shared().Forget(); }
+void ForgetSharedPicture() {
+  Shared().Forget();
+  CloseHdf5File();
+}
 
 }  // namespace lf

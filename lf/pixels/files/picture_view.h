@@ -9,7 +9,8 @@
 // ReadImageInfo(), ReadImagePart() and all other functions of image_file.h that take paths read
 // views as they read files. The picture is decoded once and kept for other views, until another
 // picture is needed or ForgetSharedPicture() is called; the pixels of arrays and of Netpbm, PFM and
-// BMP files are read from the disk instead. All functions may be called by many threads at once.
+// BMP files are read from the disk instead (an HDF5 file is kept open). All functions may be called
+// by many threads at once.
 #pragma once
 
 #include <filesystem>
@@ -53,10 +54,10 @@ Result<ImageFileInfo> ReadViewInfo(const PictureView& view);
 Result<void> ReadViewPart(const PictureView& view, const WantedPixels& wanted, ImagePart* part);
 
 // Returns the bytes that the picture of a view takes, decoded and as its file, which is in memory
-// while it is decoded; 0 if the picture is not kept.
+// while it is decoded; of an HDF5 file, the chunks that are kept; 0 if nothing is kept.
 size_t SharedPictureBytes(const PictureView& view);
 
-// Frees the picture that is kept.
+// Frees the picture that is kept, and closes the HDF5 file that is kept open.
 void ForgetSharedPicture();
 
 }  // namespace lf

@@ -300,9 +300,7 @@ Result<void> PngDecoder::Read(StoredImage* image) {
 }  // namespace
 
 Result<std::unique_ptr<PictureDecoder>> OpenPng(const FileBytes& file) {
-  auto decoder = std::make_unique<PngDecoder>(file);
-  LF_RETURN_IF_ERROR(decoder->Open());
-  return std::unique_ptr<PictureDecoder>(std::move(decoder));
+  return Opened<PngDecoder>(file);
 }
 
 }  // namespace lf

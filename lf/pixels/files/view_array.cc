@@ -12,8 +12,10 @@
 #include <vector>
 
 #include "lf/pixels/files/file_bytes.h"
+#include "lf/pixels/files/hdf5_array.h"
 #include "lf/pixels/files/npy_head.h"
 #include "lf/pixels/files/picture_decoder.h"
+#include "lf/pixels/files/views_shape.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -41,6 +43,13 @@ bool SetType(std::string_view descr, ViewArray* array) {
   array->info.is_float = kind[0] == 'f';
   array->info.bits = array->info.is_float ? 32 : 8 * array->value_bytes;
   return true;
+}
+
+// Returns true if the file begins as HDF5 files do.
+bool IsHdf5(DiskFile* disk) {
+  std::string start(8, '\0');
+  start.resize(disk->Read(0, {reinterpret_cast<uint8_t*>(start.data()), start.size()}));
+  return IsHdf5Start(start);
 }
 
 Result<ViewArray> ArrayOf(DiskFile* disk, const fs::path& file) {
@@ -90,38 +99,19 @@ Result<ViewArray> ParseViewArray(std::string_view start, uint64_t size_bytes,
   if (!parsed) return InputError(fmt::format("{}: {}", name, parsed.error().message));
   const NpyHead& head = *parsed;
   ViewArray array;
-  const std::vector<size_t>& shape = head.shape;
-  const size_t channels = shape.size() == 5 ? shape[4] : 1;
-  if (!HasShapeOfViews(head) || head.fortran_order || channels > 4)
-    return InputError(fmt::format(
-        "{}: holds an array of the shape ({}){}: expected the views of a grid of cameras, (rows, "
-        "columns, height, width) or (rows, columns, height, width, channels) in C order with up to "
-        "4 channels",
-        name, fmt::join(shape, ", "), head.fortran_order ? " in Fortran order" : ""));
+  LF_RETURN_IF_ERROR(SetShapeOfViews(head.shape, head.fortran_order, name, &array));
   if (!SetType(head.descr, &array))
     return InputError(fmt::format(
         "{}: holds numbers of the type '{}': expected uint8, uint16, float32 or float64; convert "
         "the array with astype",
         name, ShownNpyText(head.descr)));
-  const Result<size_t> count = NpyValueCount(shape);
-  if (!count) return InputError(fmt::format("{}: {}", name, count.error().message));
-  LF_RETURN_IF_ERROR(CheckPictureSize(static_cast<int64_t>(shape[3]),
-                                      static_cast<int64_t>(shape[2]),
-                                      static_cast<int64_t>(channels), name));
-  const uint64_t bytes = *count * static_cast<uint64_t>(array.value_bytes);
+  LF_ASSIGN_OR_RETURN(const size_t count, NpyValueCount(head.shape));
+  const uint64_t bytes = count * static_cast<uint64_t>(array.value_bytes);
   if (size_bytes - head.values_begin != bytes)
     return InputError(
         fmt::format("{}: has {} bytes of numbers, but its shape ({}) takes {}: copy or "
                     "save it again",
-                    name, size_bytes - head.values_begin, fmt::join(shape, ", "), bytes));
-  array.rows = static_cast<int>(shape[0]);
-  array.columns = static_cast<int>(shape[1]);
-  array.info.height = static_cast<int>(shape[2]);
-  array.info.width = static_cast<int>(shape[3]);
-  array.info.channels = static_cast<int>(channels);
-  array.info.channel_names = channels < 3 ? std::vector<std::string>{"Y", "A"}
-                                          : std::vector<std::string>{"R", "G", "B", "A"};
-  array.info.channel_names.resize(channels);
+                    name, size_bytes - head.values_begin, fmt::join(head.shape, ", "), bytes));
   array.values_begin = head.values_begin;
   return array;
 }
@@ -136,30 +126,23 @@ bool HoldsViewArray(const fs::path& file) {
 
 Result<ViewArray> ReadViewArray(const fs::path& file) {
   DiskFile disk(file);
+  if (IsHdf5(&disk)) return ReadHdf5Array(file);
   return ArrayOf(&disk, file);
 }
 
 Result<void> ReadArrayPart(const fs::path& file, int row, int column, const WantedPixels& wanted,
                            ImagePart* part) {
   DiskFile disk(file);
+  if (IsHdf5(&disk)) return ReadHdf5Part(file, row, column, wanted, part);
   LF_ASSIGN_OR_RETURN(const ViewArray array, ArrayOf(&disk, file));
-  if (row >= array.rows || column >= array.columns)
-    return InputError(fmt::format(
-        "{}: has {} rows and {} columns of views, but row {} and column {}, counted from 0, are "
-        "asked for: is it another array than when the calibration was written?",
-        file.string(), array.rows, array.columns, row, column));
-  LF_ASSIGN_OR_RETURN(const PixelRect asked, wanted(array.info));
-  const PixelRect rect = Intersection(asked, {0, 0, array.info.width, array.info.height});
-  part->info = array.info;
-  part->icc_profile.clear();
-  part->rect = rect;
+  const std::string name = file.string();
+  LF_ASSIGN_OR_RETURN(const PixelRect rect, BeginArrayPart(array, row, column, name, wanted, part));
   const uint64_t view_bytes =
       static_cast<uint64_t>(array.info.width) * static_cast<uint64_t>(array.info.height) *
       static_cast<uint64_t>(array.info.channels) * static_cast<uint64_t>(array.value_bytes);
   const uint64_t index = static_cast<uint64_t>(row) * static_cast<uint64_t>(array.columns) +
                          static_cast<uint64_t>(column);
   const uint64_t begin = array.values_begin + index * view_bytes;
-  const std::string name = file.string();
   StoredImage* const image = &part->image;
   if (array.value_bytes == 1)
     return ReadPixels<uint8_t, uint8_t>(&disk, name, array, begin, rect, image);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arrays of views in NumPy files (.npy): [row][column][y][x] or [row][column][y][x][channel], in C
-// order, of uint8, uint16, float32 or float64. The pixels of a view are read without the others.
+// Arrays of views in files of NumPy (.npy) and HDF5 (hdf5_array.h): [row][column][y][x] or
+// [row][column][y][x][channel], in C order, of uint8, uint16, float32 or float64. The pixels of a
+// view are read without the others.
 #pragma once
 
 #include <cstdint>
@@ -19,12 +20,14 @@ struct ViewArray {
   int value_bytes = 1;        // of a number in the file
   bool is_big_endian = false;
   uint64_t values_begin = 0;  // offset of the first number
+  // Bytes of an HDF5 file's chunks that are kept in memory for further views.
+  size_t cache_bytes = 0;
 };
 
 // Returns true if a file is a .npy file of four or five dimensions, as arrays of views have them.
 bool HoldsViewArray(const std::filesystem::path& file);
 
-// Parses the head of a file, from its first bytes. kInput as ReadViewArray(), naming the file.
+// Parses the head of a .npy file, from its first bytes. kInput as ReadViewArray(), naming the file.
 Result<ViewArray> ParseViewArray(std::string_view start, uint64_t size_bytes,
                                  const std::string& name);
 

@@ -124,9 +124,7 @@ class WebpDecoder : public PictureDecoder {
 }  // namespace
 
 Result<std::unique_ptr<PictureDecoder>> OpenWebp(const FileBytes& file) {
-  auto decoder = std::make_unique<WebpDecoder>(file);
-  LF_RETURN_IF_ERROR(decoder->Open());
-  return std::unique_ptr<PictureDecoder>(std::move(decoder));
+  return Opened<WebpDecoder>(file);
 }
 
 }  // namespace lf
