@@ -33,6 +33,7 @@ UNTRIED = {
     "render_summary: (--image-alpha), exclude the pixels": "names a cause, not a remedy",
     "find_threshold: --target-psnr cannot be used with --profile lossless": BEFORE,
     "read_stanford: the grid (--grid) has": BEFORE,
+    "video_frames: name a folder for them (--frame-cache)": "needs a folder that this user cannot write",
     "foreign_path: state the same quantity: leave one of them out": BEFORE,
     "rig: give 1 or more (--count)": BEFORE,
     "rig: expected a share of the camera spacing from 0 to 1": BEFORE,

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include "tools/common/help.h"
+#include "tools/common/interrupt.h"
+#include "tools/common/next_step.h"
 #include "tools/common/validators.h"
 
 namespace lf {
@@ -26,6 +28,17 @@ void AddUnusualOptions(CLI::App& app, LightFieldArgument& argument) {
            "images are square, so that one angle is the field of view of the width and of the "
            "height.")
       ->check(CLI::Range(0., 179.));
+  unusual
+      .Add("--recorded-fps FPS", argument.recorded_fps,
+           "Frames per second of a light field video (30)\n"
+           "For folders of frames, which do not state it. Videos state it themselves.")
+      ->check(CLI::Range(1e-6, 1e6));
+  unusual.Add(
+      "--frame-cache DIR", argument.frame_cache,
+      "Folder for decoded frames of videos (LIGHTFIELD.frames)\n"
+      "Frames of videos are decoded into PNG files, which later calls use again. The folder "
+      "beside LIGHTFIELD is kept below 16 GiB: frames that were not used for a day are "
+      "removed first. Nothing is removed from DIR.");
   unusual.Add(
       "--image-scale FACTOR", argument.image_scale,
       "Size of the image files relative to calibration\n"
@@ -76,6 +89,11 @@ void LightFieldArgument::AddOptionsTo(CLI::App& app) {
            "none: frames get an alpha channel; their colours are those in front of black")
       ->check(NotEmpty())
       ->default_str("as recorded, else black");
+  input.Add("--time T", time,
+            "Time that is shown of a light field video (none)\n"
+            "In seconds from the first frame; for a transforms.json in the units of its key time. "
+            "Each LF camera shows its frame nearest to the nearest recorded time. Needed for light "
+            "field videos (doc/formats/light_field_video.md).");
   AddUnusualOptions(app, *this);
 }
 
@@ -93,7 +111,9 @@ Result<void> LightFieldArgument::CheckWithPackages() const {
 }
 
 Result<LightField> LightFieldArgument::Open() const {
-  LF_ASSIGN_OR_RETURN(const OpenOptions options, Options());
+  const EndsSoon until_open;
+  LF_ASSIGN_OR_RETURN(OpenOptions options, Options());
+  options.call_again = CallOfProgram();
   return OpenLightField(path, options);
 }
 
