@@ -33,6 +33,8 @@ UNTRIED = {
     "render_summary: (--image-alpha), exclude the pixels": "names a cause, not a remedy",
     "find_threshold: --target-psnr cannot be used with --profile lossless": BEFORE,
     "read_stanford: the grid (--grid) has": BEFORE,
+    "check_film_settings: exposures of the same poses (lf_clipped)": CAPTURE + "brackets that were filmed",
+    "check_film_settings: state its key time, or open one time": BEFORE,
     "video_frames: name a folder for them (--frame-cache)": "needs a folder that this user cannot write",
     "foreign_path: state the same quantity: leave one of them out": BEFORE,
     "rig: give 1 or more (--count)": BEFORE,

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests light field videos: every form, the question for a time, single times, and errors.
+"""Tests light field videos: every form, the question for a time, single times, films through time, and errors.
 
 usage: light_field_video_test.py LFIMPORT LFEXAMPLE LFRENDERER LFMERGE LFPREPROCESSOR LFPATH LFVISUALIZER
 """
@@ -9,6 +9,7 @@ import os
 import pathlib
 import shlex
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -21,7 +22,7 @@ from PIL import Image
 
 import filmed_card
 from filmed_card import FPS, FRAMES, NAMES
-from program_test_case import ProgramTestCase
+from program_test_case import ProgramTestCase, wait_until
 
 IMPORT = EXAMPLE = RENDERER = MERGE = PREPROCESSOR = PATH = VISUALIZER = None
 SHOWN = 7  # the frame of the videos that most tests show
@@ -341,6 +342,158 @@ class LightFieldVideoTest(ProgramTestCase):
                                 env={**os.environ, "PATH": "/nonexistent"})
         self.assertEqual(result.returncode, 4, result.stderr)
         self.assertIn("apt-get install ffmpeg", result.stderr)
+
+    # Through time
+
+    def film_path(self, name="film.yaml", frames=6, time="{from: 0.11, speed: 0.5}", **options):
+        return filmed_card.write_path(self.folder / name, frames, time, **options)
+
+    def still_frames(self, times, field=None, options=(), path_options=None):
+        """Renders each frame of a path alone, from the light field of its time."""
+        path = filmed_card.write_path(self.folder / "still.yaml", len(times), **(path_options or {}))
+        frames = []
+        for number, time in enumerate(times, 1):
+            out = self.render(field or self.videos, path, "--time", f"{time:.9g}", "--frames", number, *options)
+            frames += frames_of(out)
+        return frames
+
+    def test_all_frames_are_decoded_at_once(self):
+        folder = self.copy(self.videos)
+        self.render(folder, self.film_path(frames=FRAMES, time="{from: 0}"))
+        self.check_decoded(self.folder / "videos.frames")
+
+    def test_a_signal_ends_decoding_and_leaves_no_half_file(self):
+        folder = self.folder / "long"
+        folder.mkdir()
+        filmed_card.encode(self.frames / NAMES[0], folder / f"{NAMES[0]}.mp4", codec=(
+            "-vf", "scale=960:720,loop=20:12", "-c:v", "libx264", "-preset", "ultrafast"))
+        for name in NAMES[1:]:
+            shutil.copy(folder / f"{NAMES[0]}.mp4", folder / f"{name}.mp4")
+        filmed_card.write_poses(folder)
+        decoded = self.folder / "long.frames"
+        path = filmed_card.write_path(self.folder / "long.yaml", 200, "{from: 0, speed: 1}")
+        with subprocess.Popen([RENDERER, folder, path, "-o", self.folder / "film", "-q"],
+                              stderr=subprocess.DEVNULL) as process:
+            wait_until(lambda: list(decoded.rglob(".*.png")), process)
+            process.send_signal(signal.SIGTERM)
+            process.wait(timeout=120)
+        self.assertEqual(process.returncode, 5)
+        for file in decoded.rglob("[0-9]*.png"):
+            Image.open(file).load()  # files under their own names are whole
+
+    def test_a_film_through_time_is_its_frames_one_by_one(self):
+        times = [0.11 + 0.5 * frame / 10 for frame in range(6)]
+        path = self.film_path()
+        expected = self.still_frames(times)
+        self.assertEqual(len(set(expected)), 6)
+        for field in (self.videos, self.frames):
+            fps = ["--recorded-fps", FPS] if field == self.frames else []
+            self.assertEqual(frames_of(self.render(field, path, *fps)), expected)
+        for options in (["--lens-weights", "none"], ["--estimator", "nearest"], ["--max-images", 4],
+                        ["--order", "area"], ["--threads", 1, "--memory", "64M"]):
+            with self.subTest(options):
+                if options[0] in ("--max-images", "--order"):  # ranks differ from those of one time
+                    self.render(self.videos, path, *options)
+                    continue
+                self.assertEqual(frames_of(self.render(self.videos, path, *options)),
+                                 self.still_frames(times, options=options))
+
+    def test_most_images_are_counted_within_a_slice(self):
+        """A limit of all nine cameras is no limit, though the film has many more LF images."""
+        path = self.film_path()
+        self.assertEqual(frames_of(self.render(self.videos, path, "--max-images", 9)),
+                         frames_of(self.render(self.videos, path)))
+
+    def test_slow_motion_shows_each_time_for_several_frames(self):
+        path = self.film_path(time="{from: 0, speed: 0.25}", frames=7)
+        expected = self.still_frames([0.025 * frame for frame in range(7)])
+        self.assertEqual(frames_of(self.render(self.videos, path)), expected)
+
+    def test_time_may_run_backwards_and_stand_still(self):
+        path = self.film_path(time="{from: 1.1, speed: -1}", frames=4)
+        self.assertEqual(frames_of(self.render(self.videos, path)), self.still_frames([1.1, 1.0, 0.9, 0.8]))
+        still = self.film_path("bullet.yaml", time="{from: 0.7, speed: 0}", frames=3)
+        expected = self.still_frames([TIME] * 3)
+        self.assertEqual(frames_of(self.render(self.videos, still)), expected)
+        # A film of one time has all modes and packages.
+        self.render(self.videos, still, "--mode", "hybrid")
+        self.succeeds(PREPROCESSOR, self.videos, still, "-o", self.folder / "packages", "-q")
+        packed = self.folder / "packed"
+        self.succeeds(RENDERER, *self.folder.glob("packages/*.lfp"), "-o", packed, "-q")
+        self.assertEqual(frames_of(packed), expected)
+
+    def test_a_shutter_exposes_several_times(self):
+        """A frame with a shutter is the mean of its instants, whose LF images are those of their times."""
+        shutter = "shutter: {angle_deg: 360, samples: 2}"
+        path = self.film_path(frames=1, time="{from: 0.5, speed: 4}", more=shutter)
+        blurred = pixels_of(self.render(self.videos, path, "--format", "exr-float") / "frame_0001.exr")
+        parts = [pixels_of(self.render(self.videos, filmed_card.write_path(self.folder / "still.yaml", 1), "--time",
+                                       time, "--format", "exr-float") / "frame_0001.exr") for time in (0.4, 0.6)]
+        # The camera moves by less than a thousandth of an element within the frame.
+        self.assertLess(np.abs(blurred - np.mean(parts, axis=0))[..., :3].mean(), 2e-3)
+        self.assertGreater(np.abs(blurred - parts[0])[..., :3].mean(), 5e-3)
+
+    def test_times_of_a_transforms_json_are_filmed(self):
+        field = filmed_card.write_timed(self.folder / "timed", [0, 0.5, 1], [0.2, 0.4, TIME])
+        path = self.film_path(time="{from: 0, speed: 2}", frames=6)
+        self.assertEqual(frames_of(self.render(field, path)),
+                         self.still_frames([0, 0.2, 0.4, 0.6, 0.8, 1.0], field=field))
+
+    def test_shards_of_a_film_through_time(self):
+        path = self.film_path()
+        expected = frames_of(self.render(self.videos, path))
+        for shard in (1, 2):
+            out = self.render(self.videos, path, "--shard", f"{shard}/2")
+            shutil.copytree(out / "partial" / "shards", self.folder / "shards", dirs_exist_ok=True)
+        self.succeeds(MERGE, self.folder / "shards", "-o", self.folder / "merged", "-q")
+        self.assertEqual(frames_of(self.folder / "merged"), expected)
+
+    def test_a_killed_film_resumes_to_the_same_bits(self):
+        path = self.film_path(resolution=(240, 180))
+        expected = frames_of(self.render(self.videos, path))
+        out = self.folder / "killed"
+        words = [RENDERER, self.videos, path, "-o", out, "-q", "--dump-every", "0.001s", "--memory", "96M"]
+        resume = []
+        for _ in range(3):
+            with subprocess.Popen([*map(str, words), *resume], stderr=subprocess.DEVNULL) as process:
+                wait_until(lambda: list(out.glob("partial/*.plate")), process)
+                process.send_signal(signal.SIGKILL)
+            resume = ["--resume"]
+        self.succeeds(*words, "--resume")
+        self.assertEqual(frames_of(out), expected)
+        other = self.film_path("other.yaml", time="{from: 0.115, speed: 0.5}", resolution=(240, 180))
+        self.fails(2, ["frame.recording_time"], RENDERER, self.videos, other, "-o", out, "--resume")
+
+    def test_a_missing_image_of_one_time_is_missing_there_alone(self):
+        folder = self.copy(self.frames)
+        (folder / NAMES[3] / "0003.png").unlink()
+        path = self.film_path(frames=6, time="{from: 0.1, speed: 1}")
+        whole = frames_of(self.render(self.frames, path, "--recorded-fps", FPS))
+        part = frames_of(self.render(folder, path, "--recorded-fps", FPS, "--allow-missing", 1))
+        self.assertEqual([a == b for a, b in zip(whole, part)], [True, True, False, True, True, True])
+
+    def test_what_cannot_move_through_time_says_so(self):
+        path = self.film_path()
+        film = [self.videos, path, "-o", self.folder / "a"]
+        self.fails(2, ["moves through time", "--time"], RENDERER, *film, "--time", 0)
+        self.fails(2, ["moves through time", "no light field video"], RENDERER, self.still, *film[1:])
+        self.fails(2, ["--mode hybrid", "move"], RENDERER, *film, "--mode", "hybrid")
+        self.fails(2, ["--densify"], RENDERER, *film, "--densify")
+        self.fails(2, ["packages", "--shard"], PREPROCESSOR, *film)
+        self.succeeds(PREPROCESSOR, self.videos, path, "--plan", "-q")
+        far = self.film_path("far.yaml", time="{from: 1, speed: 1}")
+        self.fails(2, ["from 0 to 1.1 s", "path"], RENDERER, self.videos, far, "-o", self.folder / "a")
+        self.fails(2, ["shows one time"], VISUALIZER, self.videos, path, "--time", 0, "--text")
+
+    def test_lfpath_keeps_the_times(self):
+        path = self.film_path()
+        for options, count in (([], 6), (["--fps", 20], 11)):
+            written = self.folder / f"written{count}.yaml"
+            self.succeeds(PATH, path, "-o", written, *options)
+            self.assertIn("time: {from: 0.11, speed: 0.5", written.read_text())
+            self.assertIn(f"frames: {count}", written.read_text())
+        self.assertEqual(frames_of(self.render(self.videos, self.folder / "written6.yaml")),
+                         frames_of(self.render(self.videos, path)))
 
 
 if __name__ == "__main__":

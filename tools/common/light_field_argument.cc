@@ -3,10 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+#include <vector>
+
 #include "tools/common/help.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/next_step.h"
 #include "tools/common/validators.h"
+
+#include "lf/import/paths/recording_times.h"
 
 namespace lf {
 namespace {
@@ -93,7 +98,8 @@ void LightFieldArgument::AddOptionsTo(CLI::App& app) {
             "Time that is shown of a light field video (none)\n"
             "In seconds from the first frame; for a transforms.json in the units of its key time. "
             "Each LF camera shows its frame nearest to the nearest recorded time. Needed for light "
-            "field videos (doc/formats/light_field_video.md).");
+            "field videos (doc/formats/light_field_video.md), unless the camera path moves through "
+            "time.");
   AddUnusualOptions(app, *this);
 }
 
@@ -108,6 +114,16 @@ Result<void> LightFieldArgument::CheckWithPackages() const {
       "{} cannot be used with packages, which contain the calibration: leave it out; if the LF "
       "images were moved, give their light field with --lightfield",
       Words()[0]));
+}
+
+Result<LightField> LightFieldArgument::OpenFor(const std::string& path_file) const {
+  const EndsSoon until_open;  // videos may take long to decode
+  LF_ASSIGN_OR_RETURN(OpenOptions options, Options());
+  options.call_again = CallOfProgram();
+  // An error of the path is reported when it is opened, after those of the light field.
+  if (Result<std::vector<double>> times = RecordingTimesOf(path_file); times && !time)
+    options.path_times = *std::move(times);
+  return OpenLightField(path, options);
 }
 
 Result<LightField> LightFieldArgument::Open() const {
