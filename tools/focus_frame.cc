@@ -9,6 +9,8 @@
 #include <iterator>
 #include <system_error>
 
+#include "lf/import/paths/recording_times.h"
+
 namespace lf {
 
 void FrameArgument::AddTo(OptionGroup& input) {
@@ -26,6 +28,7 @@ Result<CameraPath> FrameArgument::Open(const LightField& light_field,
   PathOptions options = PathOptionsFor(light_field);
   options.surface = surface;
   LF_ASSIGN_OR_RETURN(CameraPath opened, OpenPath(path, options));
+  LF_RETURN_IF_ERROR(FitToOpenTimes(light_field, &opened));
   if (frame > opened.frame_count())
     return UsageError(fmt::format("--frame {}: {} has {} frame{}: give a number from 1 to {}",
                                   frame, path, opened.frame_count(),

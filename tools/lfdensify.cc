@@ -24,6 +24,7 @@
 #include "lf/densify/densify_report.h"
 #include "lf/densify/depth_cache.h"
 #include "lf/import/paths/open_path.h"
+#include "lf/import/paths/recording_times.h"
 #include "lf/storage/packed/packed_store_file.h"
 
 namespace {
@@ -163,8 +164,8 @@ lf::Result<lf::DensifyOptions> MakeOptions(const Arguments& a, const lf::LightFi
     options.choices.depths = lf::DepthRange{a.depths[0], a.depths[1]};
   }
   if (!a.path.empty()) {
-    LF_ASSIGN_OR_RETURN(const lf::CameraPath path,
-                        lf::OpenPath(a.path, lf::PathOptionsFor(light_field)));
+    LF_ASSIGN_OR_RETURN(lf::CameraPath path, lf::OpenPath(a.path, lf::PathOptionsFor(light_field)));
+    LF_RETURN_IF_ERROR(lf::FitToOpenTimes(light_field, &path));
     options.choices.frames.assign(path.AllInstants().begin(), path.AllInstants().end());
   }
   LF_ASSIGN_OR_RETURN(options.memory_bytes, lf::ParseByteSize(a.memory, "--memory"));

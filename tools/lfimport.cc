@@ -266,6 +266,10 @@ lf::Result<lf::OpenOptions> MakeOpenOptions(const Arguments& a) {
   options.passes_over_own = WritesAgain(a);
   options.bayer = lf::BayerPatternOf(a.bayer);
   if (!a.masks.empty()) options.masks_folder = a.masks;
+  options.call_again = lf::CallOfProgram();
+  // The transforms.json refers to the frames, which therefore lie beside it, and not in a cache.
+  if (!a.output.empty() && !options.frame_cache)
+    options.frame_cache = std::filesystem::path(a.output) / "frames";
   options.import_again = [&a](const std::vector<std::string>& added) {
     // The folder for the calibration of a picture of many views has the name of the picture.
     std::error_code error;
@@ -391,6 +395,8 @@ lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
   LF_ASSIGN_OR_RETURN(const auto excluded, ReadExcluded(a));
   const auto& [patterns, excludes_missing] = excluded;
   LF_ASSIGN_OR_RETURN(lf::LightField light_field, OpenChanged(a, patterns, &report.excluded_count));
+  report.video = light_field.video;
+  report.shown_times = light_field.slice_times;
   if (!a.output.empty()) LF_RETURN_IF_ERROR(lf::CheckNames(a.output, light_field));
   lf::ThreadPool pool(common.threads);
   if (a.check != "none") {

@@ -246,7 +246,8 @@ lf::Result<lf::PathOptions> OptionsOf(const Arguments& a) {
   for (const std::string* file : {&a.dataparser, &a.out_dataparser, &a.transform})
     inputs.emplace_back(*file);
   if (!a.light_field.empty()) {
-    LF_ASSIGN_OR_RETURN(const lf::LightField light_field, lf::OpenLightField(a.light_field));
+    LF_ASSIGN_OR_RETURN(const lf::LightField light_field,
+                        lf::OpenLightField(a.light_field, {.takes_any_time = true}));
     for (std::filesystem::path& file : lf::FilesOfLightField(light_field, a.light_field))
       inputs.push_back(std::move(file));
     options = lf::PathOptionsFor(light_field);

@@ -25,6 +25,7 @@
 #include "lf/distribute/preprocess/known_depths.h"
 #include "lf/distribute/preprocess/preprocess.h"
 #include "lf/import/paths/open_path.h"
+#include "lf/import/paths/recording_times.h"
 #include "lf/render/settings/setting_table.h"
 
 namespace {
@@ -218,12 +219,23 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   const std::atomic<bool>& interrupted = lf::CatchInterrupts();
   LF_ASSIGN_OR_RETURN(const lf::MissingLimit limit, a.allow_missing.Limit());
   const auto start = std::chrono::steady_clock::now();
-  LF_ASSIGN_OR_RETURN(const lf::LightField light_field, a.light_field.Open());
+  LF_ASSIGN_OR_RETURN(const lf::LightField light_field, a.light_field.OpenFor(a.path));
   const double read_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   LF_ASSIGN_OR_RETURN(lf::CameraPath path,
                       lf::OpenPath(a.path, lf::PathOptionsToRender(light_field)));
+  LF_RETURN_IF_ERROR(lf::FitToOpenTimes(light_field, &path));
+  if (!a.output.empty() && light_field.slice_times.size() > 1)
+    return lf::UsageError(
+        "packages cannot hold a path that moves through time: render it by lfrenderer with "
+        "--shard, or package each time as a film of its own (--time)");
   LF_ASSIGN_OR_RETURN(lf::PreprocessOptions options, MakeOptions(a, common, path));
+  if (light_field.video && light_field.video->is_of_path) {
+    // Programs that get the packages open the light field again, without the path.
+    lf::LightFieldWords words = a.light_field;
+    words.time = light_field.slice_times[0];
+    options.light_field_options = words.WordsToKeep();
+  }
   if (a.frames.IsNone(options.frames)) return ReportNoFrames(a, common, light_field, path);
   options.interrupted = &interrupted;
   lf::ThreadPool pool(common.threads);

@@ -22,6 +22,7 @@
 #include "lf/core/geometry.h"
 #include "lf/core/log.h"
 #include "lf/import/paths/open_path.h"
+#include "lf/import/paths/recording_times.h"
 #include "lf/render/pipeline/render.h"
 #include "lf/render/pipeline/render_packages.h"
 #include "lf/render/state/other_films.h"
@@ -79,9 +80,10 @@ lf::Result<Rendered> RenderLightField(const lf::RenderArguments& arguments,
                                       lf::ThreadPool& pool, const Progress& progress) {
   lf::LightFieldArgument argument = arguments.light_field;
   argument.path = arguments.inputs[0];
-  LF_ASSIGN_OR_RETURN(lf::LightField light_field, argument.Open());
+  LF_ASSIGN_OR_RETURN(lf::LightField light_field, argument.OpenFor(arguments.inputs[1]));
   LF_ASSIGN_OR_RETURN(lf::CameraPath path,
                       lf::OpenPath(arguments.inputs[1], lf::PathOptionsToRender(light_field)));
+  LF_RETURN_IF_ERROR(lf::FitToOpenTimes(light_field, &path));
   LF_ASSIGN_OR_RETURN(lf::RenderOptions options, arguments.MakeOptions(common, path.frame_count()));
   if (arguments.HasNoFrame(options)) return NoFrames(arguments, std::move(options));
   options.signals = signals;
@@ -95,6 +97,10 @@ lf::Result<Rendered> RenderLightField(const lf::RenderArguments& arguments,
   options.folder.inputs = lf::FilesOfPath(arguments.inputs[1]);
   options.folder.inputs.emplace_back(arguments.inputs[0]);
   lf::MissingImages missing;
+  if (arguments.densify && light_field.slice_times.size() > 1)
+    return lf::UsageError(
+        "--densify cannot be used with a path that moves through time: render each time as a film "
+        "of its own (--time)");
   if (arguments.densify) {
     const lf::EndsSoon until_densified;
     lf::Result<lf::DensifiedFilm> densified =

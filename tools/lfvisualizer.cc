@@ -23,6 +23,7 @@
 #include "lf/core/quantities.h"
 #include "lf/core/spelling.h"
 #include "lf/import/paths/open_path.h"
+#include "lf/import/paths/recording_times.h"
 #include "lf/render/state/record_fields.h"
 #include "lf/view/scene_text.h"
 
@@ -172,6 +173,7 @@ lf::Result<void> PrintText(const Arguments& a, const lf::CommonOptions& common) 
   LF_ASSIGN_OR_RETURN(const lf::LightField light_field, a.light_field.Open());
   LF_ASSIGN_OR_RETURN(lf::CameraPath path,
                       lf::OpenPath(a.path, lf::PathOptionsToRender(light_field)));
+  LF_RETURN_IF_ERROR(lf::FitToOpenTimes(light_field, &path));
   LF_ASSIGN_OR_RETURN(std::vector<lf::FrameId> frames, a.frames.Of(path.frame_count()));
   if (a.frames.IsNone(frames))
     a.frames.TellNone();
@@ -228,6 +230,13 @@ lf::Result<void> Run(Arguments& a, const lf::CommonOptions& common) {
   a.page.interrupted = &interrupted;
   LF_ASSIGN_OR_RETURN(a.page.live_memory_bytes, lf::ParseByteSize(a.live_memory, "--live-memory"));
   LF_ASSIGN_OR_RETURN(lf::LightField light_field, a.light_field.Open());
+  // The page edits the text of the path, and opens it for itself.
+  if (const lf::Result<std::vector<double>> times = lf::RecordingTimesOf(a.path);
+      times && !times->empty())
+    return lf::UsageError(
+        fmt::format("{} moves through time (its key time), but the page shows one time: remove the "
+                    "key time from the path, and give the time with --time",
+                    a.path));
   LF_ASSIGN_OR_RETURN(const auto scene, lf::PageScene::Open(std::move(light_field), a.page));
   if (!a.export_folder.empty()) {
     lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), "steps");

@@ -9,6 +9,7 @@
 #include "lf/core/version.h"
 #include "lf/import/paths/focal_surface_file.h"
 #include "lf/import/paths/open_path.h"
+#include "lf/import/paths/recording_times.h"
 #include "lf/render/package/package.h"
 #include "lf/render/pipeline/render.h"
 
@@ -31,6 +32,7 @@ Result<Film> OpenFilm(LightField light_field, const std::filesystem::path& path,
   options.surface = of_field.surface;
   Film film;
   LF_ASSIGN_OR_RETURN(film.path, OpenPath(path, options));
+  LF_RETURN_IF_ERROR(FitToOpenTimes(light_field, &film.path));
   ThreadPool pool;
   LF_RETURN_IF_ERROR(AddFocalSurfaces(path, light_field, {{}, &pool, nullptr}, &film.path));
   film.light_field = std::move(light_field);

@@ -49,6 +49,10 @@ struct RenderCamera {
   // The elements that take rays. Unset: all. ForEachPiece() sets it.
   std::optional<PixelRect> window;
 
+  // The time of a light field video that the frame shows (light_field/model/time_slices.h). Unset:
+  // the path does not move through time, and the light field shows one time.
+  std::optional<double> recording_time;
+
   // The settings that the members above were computed from, for people and metadata.
   double time_s = 0;
   double focal_length_w = 0;

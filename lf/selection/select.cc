@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "lf/core/check.h"
+#include "lf/light_field/model/time_slices.h"
 #include "lf/selection/overlap.h"
 #include "lf/selection/seen_region.h"
 
@@ -80,6 +81,7 @@ class Selector {
     for (const TakingFrame& frame : frames) {
       regions_.emplace_back(frame.camera);
       outlines_.emplace_back(frame.camera, options.reach);
+      slices_.emplace_back(index.light_field(), frame.camera.recording_time);
     }
   }
 
@@ -108,6 +110,7 @@ class Selector {
         const size_t f = visit.frame;
         const TakingFrame& frame = frames_[f];
         if (!frame.ranks.Holds(image.rank)) continue;
+        if (!slices_[f].Holds(id)) continue;
         if (visit.all_inside == 0 && regions_[f].Misses(camera.CentreWorld())) continue;
         if (!IsWithinAngle(lf_camera, frame.camera, options_)) continue;
         if (frame.takes && !frame.takes(id)) continue;
@@ -131,6 +134,7 @@ class Selector {
   const SelectOptions& options_;
   std::vector<SeenRegion> regions_;
   std::vector<FrameOutline> outlines_;
+  std::vector<SliceOfFrame> slices_;
 };
 
 bool IsInterrupted(const SelectOptions& options) {
@@ -228,9 +232,10 @@ RankRange RanksOfFirst(size_t image_count, const ImageIndex& index,
   std::vector<Candidate> candidates;
   for (size_t i = 0; i < instants.size(); ++i) {
     const SeenRegion region(instants[i].camera);
+    const SliceOfFrame slice(light_field, instants[i].camera.recording_time);
     index.tree().ForEachLeaf(region, [&](size_t leaf, bool all_inside) {
       for (const LfImageId id : index.tree().Leaf(leaf))
-        if (all_inside || !region.Misses(light_field.Camera(id).CentreWorld()))
+        if (slice.Holds(id) && (all_inside || !region.Misses(light_field.Camera(id).CentreWorld())))
           candidates.push_back({index.RankOf(id), id, i});
     });
   }

@@ -139,6 +139,11 @@ class LightField:
         """True for LF images that were interpolated from recorded ones (doc/densify.md), of shape (n,)."""
         return self._core.is_virtual
 
+    @property
+    def times(self) -> Sequence[float]:
+        """Recording times of the LF images; empty if none are known (doc/formats/light_field_video.md)."""
+        return self._core.times
+
     @functools.cached_property
     def spacing(self) -> float:
         """Median distance from an LF camera to its nearest neighbour, in world units. Computed at the first use."""

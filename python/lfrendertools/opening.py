@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import pathlib
-from typing import Optional, Tuple, Union
+from typing import Any, Optional, Sequence, Tuple, Union
 
 from . import _core, arguments
 from .arguments import FilePath
@@ -18,7 +18,9 @@ def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[
          images: Optional[FilePath] = None, image_scale: str = "auto", image_alpha: str = "auto",
          background: str = "", pitch: Union[None, float, Tuple[float, float]] = None,
          plane_distance: Optional[float] = None, flip_x: bool = False, flip_y: bool = False,
-         grid: Optional[Tuple[int, int]] = None, serpentine: bool = False, layout: str = "") -> LightField:
+         grid: Optional[Tuple[int, int]] = None, serpentine: bool = False, layout: str = "",
+         time: Union[None, float, Sequence[float]] = None, recorded_fps: Optional[float] = None,
+         frame_cache: Optional[FilePath] = None) -> LightField:
     """Open a light field of any supported form.
 
     Parameters
@@ -48,6 +50,13 @@ def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[
         True if every second row of `grid` runs from right to left.
     layout : str, optional
         How one picture holds the views of `grid`: "mosaic", "quilt" or "lenslets". "": as its name says, or a mosaic.
+    time : float or sequence of float, optional
+        For light field videos: the time that is shown, in seconds from the first frame (in a transforms.json, in units
+        of its key time). Several times open the slices that a path with the key `time` shows.
+    recorded_fps : float, optional
+        For light field videos in folders of frames: frames per second; 30 if it is not given.
+    frame_cache : path, optional
+        For light field videos: folder into which frames are decoded, in place of the one beside the light field.
 
     Returns
     -------
@@ -55,6 +64,8 @@ def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[
 
     Raises
     ------
+    UsageError
+        `path` is a light field video, and `time` is missing or outside of it.
     InputError
         There is no light field at `path`, or its calibration is wrong.
 
@@ -77,6 +88,7 @@ def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[
     if grid is not None:
         sides = arguments.whole_numbers("grid", grid, 2)
         grid = (sides[0], sides[1])
+    times: Any = () if time is None else time if hasattr(time, "__len__") else (time,)
     core = _core.open_light_field(
         os.fsencode(source), 0.0 if focal_px is None else arguments.positive("focal_px", focal_px),
         0.0 if fov_deg is None else arguments.positive("fov_deg", fov_deg),
@@ -85,7 +97,10 @@ def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[
         arguments.text("background", background), pitch,
         None if plane_distance is None else arguments.real("plane_distance", plane_distance),
         grid, arguments.choice("layout", layout, _LAYOUTS),
-        (arguments.flag("flip_x", flip_x), arguments.flag("flip_y", flip_y), arguments.flag("serpentine", serpentine)))
+        (arguments.flag("flip_x", flip_x), arguments.flag("flip_y", flip_y), arguments.flag("serpentine", serpentine)),
+        [arguments.real("time", value) for value in times],
+        0.0 if recorded_fps is None else arguments.positive("recorded_fps", recorded_fps),
+        b"" if frame_cache is None else os.fsencode(_absolute("frame_cache", frame_cache)))
     return LightField(core, source)
 
 

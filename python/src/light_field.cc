@@ -48,8 +48,13 @@ std::shared_ptr<OpenedField> Open(const std::string& path, double focal_px, doub
                                   const std::optional<std::array<double, 2>>& pitch,
                                   std::optional<double> plane_distance,
                                   const std::optional<std::array<int, 2>>& grid,
-                                  const std::string& layout, const std::array<bool, 3>& flips) {
+                                  const std::string& layout, const std::array<bool, 3>& flips,
+                                  const std::vector<double>& times, double recorded_fps,
+                                  const std::string& frame_cache) {
   LightFieldWords words;
+  if (times.size() == 1) words.time = times[0];
+  if (recorded_fps > 0) words.recorded_fps = recorded_fps;
+  words.frame_cache = frame_cache;
   words.focal_px = focal_px;
   words.fov_deg = fov_deg;
   words.images = images;
@@ -66,6 +71,7 @@ std::shared_ptr<OpenedField> Open(const std::string& path, double focal_px, doub
     options.grid = grid;
     options.layout = PictureLayoutOf(layout);
     options.is_serpentine = flips[2];
+    if (times.size() > 1) options.path_times = times;
     field->light_field = Take(OpenLightField(path, options));
     field->store = Take(OpenStore(field->light_field, Mosaics::kToRgb));
     field->options = words.WordsToKeep();
@@ -314,6 +320,7 @@ void AddLightField(py::module_& module) {
       .def_property_readonly("intrinsics_index", &IntrinsicsIndex)
       .def_property_readonly("gains", &Gains)
       .def_property_readonly("is_virtual", &IsVirtual)
+      .def_property_readonly("times", [](const OpenedField& f) { return f.light_field.times; })
       .def("centres", &Centres)
       .def("intrinsics", &IntrinsicsOf)
       .def("middle", [](const OpenedField& f) { return MiddleCamera(f.light_field).value; })

@@ -13,6 +13,7 @@ import subprocess
 import numpy as np
 from PIL import Image
 
+import filmed_card
 import pose_mistakes
 from small_field import wall, write_field, write_path
 from source_messages import PROGRAMS
@@ -103,6 +104,9 @@ def make_world(folder: pathlib.Path, shell: Shell):
     changed(folder / "capture", folder / "mixed", lambda frames: frames[3].update(w=60))
     with_brackets(folder / "capture", folder / "brackets")
     write_field(folder / "flat", lambda index: np.full((48, 64, 3), 90, np.uint8))
+    filmed_card.write_frames(folder / "filmed", frames=3)
+    filmed_card.write_poses(folder / "filmed")
+    filmed_card.write_path(folder / "moving.yaml", 2, "{from: 0, speed: 0.5}")
     reduced(folder / "capture", folder / "half")
     photographed(folder / "capture", folder / "photos")
     named_by_grid(folder / "capture", folder / "cards")

@@ -10,6 +10,7 @@ import json
 import pathlib
 import re
 import shlex
+import shutil
 import sys
 import unittest
 
@@ -94,6 +95,18 @@ class InputsPageTest(ProgramTestCase):
             file.attrs.update({"dH": 0.1, "focalLength": 60.0, "shift": 1.0})
         return folder / "lf.h5"
 
+    def filmed(self, folder):
+        """Each camera has a folder of two frames."""
+        write_formats.llff(self.field, self.field_folder, folder)
+        images = sorted((folder / "images").iterdir())
+        for n, image in enumerate(images):
+            frames = folder / f"cam{n:02}"
+            frames.mkdir()
+            for frame in range(2):
+                shutil.copy(image, frames / f"{frame:04}{image.suffix}")
+        shutil.rmtree(folder / "images")
+        return folder
+
     def array(self, folder):
         np.save(folder / "views.npy", self.views)
         return folder / "views.npy"
@@ -131,6 +144,7 @@ class InputsPageTest(ProgramTestCase):
         "MVSNet and its successors": of_exports(write_exports.write_mvsnet),
         "NeRF's scenes of Blender": nerf,
         "nerfies, HyperNeRF": of_exports(write_exports.write_nerfies),
+        "Neural 3D Video, other videos of several cameras": filmed,
         "nerfstudio, instant-ngp": of_formats(write_formats.nerfstudio),
         "NSVF": of_exports(write_exports.write_nsvf),
         "NumPy": array,

@@ -20,6 +20,7 @@ import jsonschema
 import numpy as np
 from PIL import Image
 
+import filmed_card
 import found_captures
 import pose_mistakes
 import schema_files
@@ -285,6 +286,9 @@ class SchemasTest(ProgramTestCase):
         for file in phone.glob("*.png"):
             Image.open(file).save(file, icc_profile=found_captures.display_p3_profile())
         self.prints("import_report", "lfimport", phone)
+        filmed = filmed_card.write_timed(self.folder / "filmed", [0, 1])
+        self.prints("import_report", "lfimport", filmed, "--time", 0, "-o", self.folder / "shown")
+        self.valid_file("transforms", self.folder / "shown/transforms.json")
         mistaken = pose_mistakes.write_mistake("opencv-axes", self.still_life, self.folder / "mistaken")
         self.prints("import_report", "lfimport", mistaken)
         brackets = self.bracketed()

@@ -3,8 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+#include <vector>
+
 #include "tools/common/help.h"
+#include "tools/common/interrupt.h"
+#include "tools/common/next_step.h"
 #include "tools/common/validators.h"
+
+#include "lf/import/paths/recording_times.h"
 
 namespace lf {
 namespace {
@@ -26,6 +33,17 @@ void AddUnusualOptions(CLI::App& app, LightFieldArgument& argument) {
            "images are square, so that one angle is the field of view of the width and of the "
            "height.")
       ->check(CLI::Range(0., 179.));
+  unusual
+      .Add("--recorded-fps FPS", argument.recorded_fps,
+           "Frames per second of a light field video (30)\n"
+           "For folders of frames, which do not state it. Videos state it themselves.")
+      ->check(CLI::Range(1e-6, 1e6));
+  unusual.Add(
+      "--frame-cache DIR", argument.frame_cache,
+      "Folder for decoded frames of videos (LIGHTFIELD.frames)\n"
+      "Frames of videos are decoded into PNG files, which later calls use again. The folder "
+      "beside LIGHTFIELD is kept below 16 GiB: frames that were not used for a day are "
+      "removed first. Nothing is removed from DIR.");
   unusual.Add(
       "--image-scale FACTOR", argument.image_scale,
       "Size of the image files relative to calibration\n"
@@ -76,6 +94,12 @@ void LightFieldArgument::AddOptionsTo(CLI::App& app) {
            "none: frames get an alpha channel; their colours are those in front of black")
       ->check(NotEmpty())
       ->default_str("as recorded, else black");
+  input.Add("--time T", time,
+            "Time that is shown of a light field video (none)\n"
+            "In seconds from the first frame; for a transforms.json in the units of its key time. "
+            "Each LF camera shows its frame nearest to the nearest recorded time. Needed for light "
+            "field videos (doc/formats/light_field_video.md), unless the camera path moves through "
+            "time.");
   AddUnusualOptions(app, *this);
 }
 
@@ -92,8 +116,20 @@ Result<void> LightFieldArgument::CheckWithPackages() const {
       Words()[0]));
 }
 
+Result<LightField> LightFieldArgument::OpenFor(const std::string& path_file) const {
+  const EndsSoon until_open;  // videos may take long to decode
+  LF_ASSIGN_OR_RETURN(OpenOptions options, Options());
+  options.call_again = CallOfProgram();
+  // An error of the path is reported when it is opened, after those of the light field.
+  if (Result<std::vector<double>> times = RecordingTimesOf(path_file); times && !time)
+    options.path_times = *std::move(times);
+  return OpenLightField(path, options);
+}
+
 Result<LightField> LightFieldArgument::Open() const {
-  LF_ASSIGN_OR_RETURN(const OpenOptions options, Options());
+  const EndsSoon until_open;
+  LF_ASSIGN_OR_RETURN(OpenOptions options, Options());
+  options.call_again = CallOfProgram();
   return OpenLightField(path, options);
 }
 

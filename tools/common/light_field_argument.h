@@ -20,6 +20,9 @@ struct LightFieldArgument : LightFieldWords {
   // Adds only the options, without the positional argument.
   void AddOptionsTo(CLI::App& app);
   Result<LightField> Open() const;
+  // Opens the light field for the frames of a path. Of a light field video, without --time, these
+  // are the slices that the frames show (RecordingTimesOf() of import/paths/recording_times.h).
+  Result<LightField> OpenFor(const std::string& path_file) const;
   // kUsage if an option is given that packages would ignore, because they contain their calibration
   // and the meaning of alpha. With --lightfield (`path`), only --image-alpha and --background are
   // refused; the other options apply to the light field that it names.

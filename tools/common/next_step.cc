@@ -10,6 +10,7 @@
 #include <iterator>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include "lf/core/shell_word.h"
 
@@ -49,6 +50,12 @@ std::set<fs::path> Matching(const fs::path& folder, const std::string& pattern) 
   return files;
 }
 
+// The command line of this process.
+std::vector<std::string>& CallWords() {
+  static std::vector<std::string> words;
+  return words;
+}
+
 }  // namespace
 
 std::string SameCall(std::span<const std::string> call, const std::vector<std::string>& added,
@@ -67,6 +74,12 @@ std::string SameCall(std::span<const std::string> call, const std::vector<std::s
   }
   words.insert(words.end(), rest, call.end());
   return ShellCommand(words);
+}
+
+void SetCallOfProgram(std::vector<std::string> words) { CallWords() = std::move(words); }
+
+CallAgain CallOfProgram() {
+  return [](const std::vector<std::string>& added) { return SameCall(CallWords(), added); };
 }
 
 std::string ShellPackages(const std::vector<std::string>& packages) {

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "lf/core/shell_word.h"
+
 namespace lf {
 
 // Returns the command of a call again, with options added. A command line that ends with words
@@ -16,6 +18,11 @@ namespace lf {
 //   dropped  options without a value, which are left out
 std::string SameCall(std::span<const std::string> call, const std::vector<std::string>& added,
                      const std::vector<std::string>& dropped = {});
+
+// Keeps the words of the command line of this process. Program::Run() calls it.
+void SetCallOfProgram(std::vector<std::string> words);
+// Returns a function that repeats the call of this process with options added, as SameCall() does.
+CallAgain CallOfProgram();
 
 // Returns packages as words of a shell: as a pattern such as FOLDER/package-*.lfp if it matches
 // them and no others, otherwise one by one.

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "tools/common/describe.h"
+#include "tools/common/next_step.h"
 #include "tools/common/parse_errors.h"
 #include "tools/common/process_start.h"
 #include "tools/common/progress.h"
@@ -101,6 +102,7 @@ int Program::Run(int argc, char** argv, const std::function<Result<void>()>& bod
 #endif
   StartProcess();
   SetSpeller(CommandLineOption);
+  SetCallOfProgram({argv, argv + argc});
   // A closed pipe or a file size limit must be an error of the write and not end the program.
   ::signal(SIGPIPE, SIG_IGN);
   ::signal(SIGXFSZ, SIG_IGN);

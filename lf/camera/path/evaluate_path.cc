@@ -197,6 +197,7 @@ Result<RenderCamera> CameraAt(const Moment& moment) {
   camera.aperture = {diameter_w / 2, path.blades, rotation_rad, path.ratio, path.roundness};
   camera.hood = {path.hood_distance_w, path.hood_diameter_w / 2};
   camera.transmission = path.transmission;
+  if (path.recording) camera.recording_time = path.recording->At(moment.time_s);
   return camera;
 }
 
@@ -253,7 +254,14 @@ Result<RenderCamera> PathFrames::CameraAtTime(FrameId frame, double time_s) cons
 Result<RenderCamera> PathFrames::Camera(FrameId frame) const {
   LF_CHECK(frame.value >= 1 && frame.value <= frame_count());
   if (!described_) return whole_.Camera(frame);
-  return CameraAtTime(frame, (frame.value - 1) / described_->fps);
+  LF_ASSIGN_OR_RETURN(RenderCamera camera,
+                      CameraAtTime(frame, (frame.value - 1) / described_->fps));
+  // All views of a moment show one recording time.
+  if (described_->recording && described_->views > 1) {
+    const uint32_t moment = (frame.value - 1) / static_cast<uint32_t>(described_->views);
+    camera.recording_time = described_->recording->At(moment / described_->fps);
+  }
+  return camera;
 }
 
 Result<RenderCamera> PathFrames::Instant(FrameId frame, int instant) const {

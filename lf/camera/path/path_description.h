@@ -25,6 +25,15 @@ struct Quantity {
   double units_per_file = 1;  // internal value = units_per_file * value in the file
 };
 
+// The times of a light field video that a path shows: `from` at the time 0 of the path, and `speed`
+// units of recording time later for each second. Speed 0 stands still.
+struct RecordingClock {
+  double from = 0;
+  double speed = 1;
+
+  double At(double time_s) const { return from + speed * time_s; }
+};
+
 struct PathDescription {
   std::string file_name;
   double fps = 30;
@@ -34,6 +43,7 @@ struct PathDescription {
   int height_px = 0;
   int views = 1;  // of each moment (CameraPath::views)
   Shutter shutter;
+  std::optional<RecordingClock> recording;  // unset: the path does not move through time
 
   Quantity position_w;
   std::optional<Quantity> look_at_w;    // set unless `orientation` is set

@@ -104,6 +104,24 @@ void ReadShutter(YamlMap* file, PathDescription* path) {
                             path->frame_count, path->shutter.samples, count, kMostInstants));
 }
 
+// Reads the mapping `time`.
+void ReadRecordingClock(YamlMap* file, PathDescription* path) {
+  const YamlEntry* entry = file->Find("time");
+  if (!entry) return;
+  YamlErrors* errors = file->errors();
+  YamlMap time(*entry->value, "time", errors);
+  const auto read = [&](const YamlEntry* value, const char* label, double otherwise) {
+    if (!value) return otherwise;
+    return ReadNumber(*value->value, label, NumberRange::Within(-1e9, 1e9), errors)
+        .value_or(otherwise);
+  };
+  RecordingClock clock;
+  clock.from = read(time.Require("from", "from: 0"), "time.from", clock.from);
+  clock.speed = read(time.Find("speed"), "time.speed", clock.speed);
+  time.CheckKeys();
+  path->recording = clock;
+}
+
 // Checks the version of the format, which determines the meaning of all other keys. If the version
 // is wrong, no other error is reported.
 bool CheckFormat(YamlMap* file) {
@@ -120,6 +138,7 @@ PathDescription Describe(const YamlNode& root, std::optional<double> light_field
   ReadClock(&file, &path);
   ReadViews(&file, &path);
   ReadShutter(&file, &path);
+  ReadRecordingClock(&file, &path);
   ReadUnit(&file, light_field_unit_m, &path);
   ReadResolution(&file, &path);
   const YamlEntry* camera = file.Require("camera", "camera: {position: [0, 0, -0.4], ...}");

@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 
+#include "lf/camera/path/path_description.h"
 #include "lf/camera/path/path_yaml.h"
 
 namespace lf {
@@ -198,6 +200,28 @@ bool HaveOneShape(const RenderCamera& a, const RenderCamera& b) {
          agree(a.hood.distance_w, b.hood.distance_w) && agree(a.hood.radius_w, b.hood.radius_w);
 }
 
+// Returns the recording times of the frames as a clock; nullopt if there are none. Sets *lost_count
+// to the number of frames that show another time than the clock tells.
+std::optional<RecordingClock> ClockOf(const CameraPath& path, size_t* lost_count) {
+  constexpr double kEqualTimes = 1e-9;
+  const RenderCamera& first = path.cameras.front();
+  const RenderCamera& last = path.cameras.back();
+  if (!first.recording_time || !last.recording_time) return std::nullopt;
+  const auto seconds_of = [&](size_t frame) {
+    return static_cast<double>(frame / static_cast<size_t>(path.views)) / path.fps;
+  };
+  const double duration_s = seconds_of(path.frame_count() - 1);
+  RecordingClock clock = {*first.recording_time, 0};
+  if (duration_s > 0) clock.speed = (*last.recording_time - clock.from) / duration_s;
+  for (size_t i = 0; i < path.frame_count(); ++i) {
+    const std::optional<double>& time = path.cameras[i].recording_time;
+    const double told = clock.At(seconds_of(i));
+    if (!time || !(std::abs(*time - told) <= kEqualTimes * std::max(1.0, std::abs(told))))
+      ++*lost_count;
+  }
+  return clock;
+}
+
 // Returns the section of the focal surface.
 std::string FocusText(const FocalSurfaceSource& source) {
   std::string quoted;
@@ -235,6 +259,9 @@ std::vector<std::string> LostOf(const CameraPath& path) {
     if (count > 0)
       lost.push_back(fmt::format("{} of {} frame{}", what, count, count == 1 ? "" : "s"));
   };
+  size_t other_times = 0;
+  ClockOf(path, &other_times);
+  add(other_times, "the time of the light field video, which does not pass evenly,");
   add(stretched, "the shape of the elements, which are no squares,");
   add(shapes, "blades, ratio, hood and transmission, which differ from those of the first frame,");
   return lost;
@@ -253,6 +280,9 @@ Result<PathYaml> PathYamlOf(const CameraPath& path) {
   if (path.shutter.exists())
     yaml.text += fmt::format("shutter: {{angle_deg: {}, samples: {}}}\n", path.shutter.angle_deg,
                              path.shutter.samples);
+  size_t other_times = 0;
+  if (const std::optional<RecordingClock> clock = ClockOf(path, &other_times))
+    yaml.text += fmt::format("time: {{from: {}, speed: {}}}\n", clock->from, clock->speed);
   if (path.focal_surface) yaml.text += FocusText(*path.focal_surface);
   AddSection("camera", camera, "", &yaml.text);
   AddSection("lens", lens, ShapeText(path.cameras[0]), &yaml.text);

@@ -55,6 +55,12 @@ bool SetByOption(const std::string& option, const std::string& value, LightField
   constexpr double kAny = std::numeric_limits<double>::max(), kMostFov = 179;
   if (option == OptionFor("focal_px")) return set_number(kAny, &words->focal_px);
   if (option == OptionFor("fov_deg")) return set_number(kMostFov, &words->fov_deg);
+  if (option == OptionFor("time")) {
+    words->time = ParseNumber(value);
+    return words->time.has_value();
+  }
+  if (option == OptionFor("recorded_fps")) return set_number(kAny, &words->recorded_fps.emplace());
+  if (option == OptionFor("frame_cache")) return set(true, &words->frame_cache);
   if (option == OptionFor("images")) return set(true, &words->images);
   if (option == OptionFor("image_scale")) return set(true, &words->image_scale);
   if (option == OptionFor("image_alpha"))
@@ -76,6 +82,9 @@ Result<OpenOptions> LightFieldWords::Options() const {
   if (focal_px > 0) options.focal_px = focal_px;
   if (fov_deg > 0) options.fov_deg = fov_deg;
   if (!images.empty()) options.images_folder = images;
+  options.time = time;
+  options.recorded_fps = recorded_fps;
+  if (!frame_cache.empty()) options.frame_cache = frame_cache;
   return options;
 }
 
@@ -90,12 +99,16 @@ std::vector<std::string> LightFieldWords::Words() const {
   if (image_scale != "auto") add("image_scale", image_scale);
   if (image_alpha != "auto") add("image_alpha", image_alpha);
   if (!background.empty()) add("background", background);
+  if (time) add("time", fmt::format("{}", *time));
+  if (recorded_fps) add("recorded_fps", fmt::format("{}", *recorded_fps));
+  if (!frame_cache.empty()) add("frame_cache", FileArgument(frame_cache));
   return words;
 }
 
 std::vector<std::string> LightFieldWords::WordsToKeep() const {
   LightFieldWords kept = *this;
-  if (!images.empty()) kept.images = std::filesystem::absolute(images).lexically_normal().string();
+  for (std::string* const folder : {&kept.images, &kept.frame_cache})
+    if (!folder->empty()) *folder = std::filesystem::absolute(*folder).lexically_normal().string();
   return kept.Words();
 }
 

@@ -2,6 +2,7 @@
 // The options of light fields that all programs share, as texts: what people say besides the name.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct LightFieldWords {
   double focal_px = 0;
   double fov_deg = 0;
   std::string images, image_scale = "auto", image_alpha = "auto", background;
+  std::optional<double> time, recorded_fps;
+  std::string frame_cache;
 
   // Converts the options. kUsage if a value cannot be parsed.
   Result<OpenOptions> Options() const;

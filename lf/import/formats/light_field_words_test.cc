@@ -26,6 +26,9 @@ TEST(LightFieldWords, AreReadAgainInAnotherFolder) {
   words.image_scale = "off";
   words.image_alpha = "straight";
   words.background = "0.2,0.2,0.3";
+  words.time = -0.1;
+  words.recorded_fps = 29.97;
+  words.frame_cache = "decoded";
   const Words kept = words.WordsToKeep();
   const auto read = LightFieldWords::Of("field", kept);
   ASSERT_TRUE(read);
@@ -35,6 +38,9 @@ TEST(LightFieldWords, AreReadAgainInAnotherFolder) {
   EXPECT_EQ(read->image_scale, words.image_scale);
   EXPECT_EQ(read->image_alpha, words.image_alpha);
   EXPECT_EQ(read->background, words.background);
+  EXPECT_EQ(read->time, words.time);
+  EXPECT_EQ(read->recorded_fps, words.recorded_fps);
+  EXPECT_EQ(read->frame_cache, (std::filesystem::current_path() / "decoded").string());
   EXPECT_EQ(read->Words(), kept);
 }
 
@@ -42,7 +48,7 @@ TEST(LightFieldWords, OthersAreRefusedAndNamed) {
   for (const Words& wrong :
        {Words{"--speed", "3"}, Words{"--fov-deg"}, Words{"--fov-deg", "180"},
         Words{"--focal-px", "-1"}, Words{"--focal-px", "nan"}, Words{"--image-alpha", "yes"},
-        Words{"--background", ""}, Words{"images", "here"}}) {
+        Words{"--background", ""}, Words{"--time", "now"}, Words{"images", "here"}}) {
     const auto read = LightFieldWords::Of("field", wrong);
     ASSERT_FALSE(read) << wrong[0];
     EXPECT_EQ(read.error().kind, ErrorKind::kInput);

@@ -13,10 +13,12 @@
 #include <vector>
 
 #include "lf/core/log.h"
+#include "lf/import/exports/export_cameras.h"
 #include "lf/import/exports/export_forms.h"
 #include "lf/import/exports/import_limits.h"
 #include "lf/import/formats/complete_light_field.h"
 #include "lf/import/formats/folder_hints.h"
+#include "lf/import/formats/open_video.h"
 #include "lf/import/formats/open_views.h"
 #include "lf/import/formats/option_checks.h"
 #include "lf/import/formats/picture_grid.h"
@@ -30,6 +32,7 @@
 #include "lf/light_field/colmap/read_colmap.h"
 #include "lf/light_field/model/brackets.h"
 #include "lf/light_field/model/image_files.h"
+#include "lf/light_field/model/time_slices.h"
 #include "lf/light_field/transforms_json/transforms_json.h"
 #include "lf/pixels/files/hdf5_array.h"
 #include "lf/pixels/files/view_array.h"
@@ -262,7 +265,34 @@ std::optional<fs::path> OnlyPictureIn(const fs::path& path) {
   return std::nullopt;
 }
 
+// Opens the light field video of a folder. Returns nullopt if there is none, or if another light
+// field in the folder is opened, because no time is given.
+std::optional<Result<LightField>> OpenVideo(const fs::path& folder, const OpenOptions& options,
+                                            const fs::path& asked_for) {
+  std::error_code error;
+  if (fs::exists(folder / kCalibrationName, error) && !options.passes_over_own) return std::nullopt;
+  const std::optional<VideoFolder> found = FindVideoFolder(folder);
+  if (!found) return std::nullopt;
+  if (!options.time && options.path_times.empty()) {
+    if (options.images_folder) return std::nullopt;
+    const Result<std::optional<fs::path>> model = FindColmapModel(folder, /*warns=*/false);
+    if (found->holds_stills || (model && *model)) {
+      LogInfo("{}: videos of its cameras are there, too, and are not read: give a time ({{time}})",
+              asked_for.string());
+      return std::nullopt;
+    }
+  }
+  if (Result<void> result = CheckNoStanfordOptions(folder, options); !result) return result.error();
+  if (Result<void> result = CheckNoFov(folder, options); !result) return result.error();
+  if (Result<void> result = CheckNoImagesFolder(folder, options); !result) return result.error();
+  LogDebug("{}: opened as a light field video of {} cameras", folder.string(),
+           found->cameras.size());
+  return OpenVideoFolder(*found, options, asked_for);
+}
+
 Result<LightField> OpenFolder(const fs::path& path, const OpenOptions& options) {
+  if (std::optional<Result<LightField>> video = OpenVideo(path, options, path))
+    return *std::move(video);
   std::string series;
   if (std::optional<Result<LightField>> own = OpenOwnForm(path, options, &series)) {
     if (*own) LogUnreadExport(path);
@@ -302,6 +332,9 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
   if (fs::is_directory(status)) return OpenFolder(path, options);
   if (HasHdf5Name(path) || (path.extension() == ".npy" && HoldsViewArray(path)))
     return OpenArray(path, options, path);
+  if (path.filename() == kLlffName || path.filename() == "models.json")
+    if (std::optional<Result<LightField>> video = OpenVideo(FolderAbove(path), options, path))
+      return *std::move(video);
   if (std::optional<Result<LightField>> opened = OpenFile(path, options)) return *opened;
   if (IsImageName(path.filename().string())) return OpenPicture(path, options, path);
   return InputError(
@@ -373,6 +406,7 @@ Result<std::vector<Vec3>> PointsSeenBy(const fs::path& path, const LightField& l
 Result<LightField> OpenLightField(const fs::path& path, const OpenOptions& options) {
   LF_ASSIGN_OR_RETURN(LightField light_field, OpenCalibration(path, options));
   light_field.source = path;
+  LF_RETURN_IF_ERROR(ChooseTimes(options, path, &light_field));
   if (!HoldsPackedStore(light_field)) {
     LF_RETURN_IF_ERROR(FindImages(options, path, &light_field));
     LF_RETURN_IF_ERROR(FindMasks(options, &light_field));
@@ -383,6 +417,9 @@ Result<LightField> OpenLightField(const fs::path& path, const OpenOptions& optio
   // A packed store needs no ApplyBrackets(), because its encoded masks contain the clipped pixels.
   if (!HoldsPackedStore(light_field) && light_field.encoding.masks_clipped)
     ApplyBrackets(&light_field);
+  if (light_field.video && light_field.slice_times.size() == 1)
+    LogInfo("{}: shows the time {:.6g} of a light field video, {}", path.string(),
+            light_field.slice_times[0], TextOfSpan(*light_field.video));
   const Intrinsics& first = light_field.Camera({0}).intrinsics;
   LogDebug("{}: {} LF images in {}, the first of {} x {} pixels{}, {} distinct intrinsics{}{}",
            path.string(), light_field.size(), light_field.folder.string(), first.width_px,

@@ -41,6 +41,24 @@ struct OpenOptions {
   // and replace those that the calibration names. Only lfimport offers it. kUsage for packed
   // stores.
   std::optional<std::filesystem::path> masks_folder = {};
+  // For light field videos (doc/formats/light_field_video.md): the recording time that is shown, in
+  // seconds from the first frame; in a transforms.json, in units of its key "time". kUsage for
+  // other light fields.
+  std::optional<double> time = {};
+  // The recording times that the frames of a path show, if `time` is not set: the slices of all of
+  // them are opened (import/paths/recording_times.h).
+  std::vector<double> path_times = {};
+  // If true and neither `time` nor `path_times` is set, the first time is opened: for programs that
+  // need no LF images.
+  bool takes_any_time = false;
+  // Frames per second of folders of frames, which do not state it; unset: 30.
+  std::optional<double> recorded_fps = {};
+  // Folder into which frames of videos are decoded, from which nothing is removed; unset: beside
+  // the light field (import/video/video_frames.h).
+  std::optional<std::filesystem::path> frame_cache = {};
+  // Repeats the running call in the question for a time; unset: the question names the option
+  // alone.
+  CallAgain call_again = {};
   // How much the size of image files may differ from the calibrated size.
   ImageScale image_scale = {};
   // alpha, background and keeps_opacity state the meaning of alpha and the background, and override
@@ -76,6 +94,9 @@ bool HoldsOwnAndItsSource(const std::filesystem::path& folder, bool has_grid = f
 // - a COLMAP model, in the folder, its sparse/0 or below: light_field/colmap/read_colmap.h
 // - NAME_par.txt: import/formats/read_middlebury.h
 // - poses_bounds.npy, or any .npy file of two dimensions: import/formats/read_llff.h
+// - poses_bounds.npy or models.json beside videos, or folders of frames, of the cameras
+//   (import/formats/open_video.h): a light field video. If image files of the calibration are there
+//   as well, they are opened unless a time is given
 // - parameters.cfg, or any .cfg file: import/formats/read_hci.h
 // - poses.json, or any .json file with M3x4 matrices: import/formats/read_aos.h
 // - transforms_train.json, transforms_val.json and transforms_test.json: their union
@@ -106,7 +127,8 @@ bool HoldsOwnAndItsSource(const std::filesystem::path& folder, bool has_grid = f
 // is no light field (the message lists what was searched for, and advises how to export files that
 // only other programs read); an error of the reader;
 // images_folder has none of the images; masks_folder has none of the masks; camera raw files with
-// an unknown Bayer pattern. kUsage: an option that the calibration does not allow.
+// an unknown Bayer pattern. kUsage: an option that the calibration does not allow; a light field
+// video without a time. kOutput: frames of a video cannot be decoded.
 Result<LightField> OpenLightField(const std::filesystem::path& path,
                                   const OpenOptions& options = {});
 

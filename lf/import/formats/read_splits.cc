@@ -19,13 +19,15 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-// The numbers of a pose: those of the rotation, then those of the translation.
-using PoseNumbers = std::array<double, 12>;
+// The numbers of a pose: those of the rotation, then those of the translation, and the recording
+// time, because a camera that films has one pose at many times.
+using PoseNumbers = std::array<double, 13>;
 
-PoseNumbers NumbersOf(const RigidTransform& pose) {
+PoseNumbers NumbersOf(const RigidTransform& pose, double time) {
   PoseNumbers numbers;
   const auto end = std::copy(pose.rotation.data(), pose.rotation.data() + 9, numbers.begin());
   std::copy(pose.translation.data(), pose.translation.data() + 3, end);
+  numbers.back() = time;
   return numbers;
 }
 
@@ -55,7 +57,8 @@ class Union {
     std::vector<PoseNumbers> added;
     for (size_t i = 0; i < part.size(); ++i) {
       LfCamera& camera = part.cameras[i];
-      const PoseNumbers pose = NumbersOf(camera.cam_from_world);
+      const PoseNumbers pose =
+          NumbersOf(camera.cam_from_world, part.times.empty() ? 0 : part.times[i]);
       if (poses_.contains(pose)) {
         ++repeated_count_;
         continue;
@@ -64,6 +67,7 @@ class Union {
       camera.intrinsics_index = distinct_.IndexOf(part.intrinsics[camera.intrinsics_index]);
       whole_.cameras.push_back(camera);
       whole_.image_names.push_back(NameIn(part.folder, part.image_names[i]));
+      if (!part.times.empty()) whole_.times.push_back(part.times[i]);
       if (part.mask_names.empty() || part.mask_names[i].empty()) continue;
       whole_.mask_names.resize(whole_.size());
       whole_.mask_names.back() = NameIn(part.folder, part.mask_names[i]);
@@ -77,6 +81,7 @@ class Union {
   LightField Take() {
     whole_.intrinsics = distinct_.Take();
     if (!whole_.mask_names.empty()) whole_.mask_names.resize(whole_.size());
+    if (whole_.times.size() != whole_.size()) whole_.times.clear();  // a part states none
     return std::move(whole_);
   }
 

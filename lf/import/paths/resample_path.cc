@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -106,6 +107,17 @@ class CameraCurves {
   std::vector<KeyframeCurve> numbers_;
 };
 
+// Returns the recording time between two moments of a path; nullopt if it has none.
+std::optional<double> RecordingTimeAt(const CameraPath& path, double moment) {
+  const auto views = static_cast<size_t>(path.views);
+  const auto before = static_cast<size_t>(moment);
+  const size_t after = std::min(before + 1, path.moment_count() - 1);
+  const std::optional<double>& a = path.cameras[before * views].recording_time;
+  const std::optional<double>& b = path.cameras[after * views].recording_time;
+  if (!a || !b) return std::nullopt;
+  return *a + (moment - static_cast<double>(before)) * (*b - *a);
+}
+
 }  // namespace
 
 Result<CameraPath> ResamplePath(const CameraPath& path, std::optional<double> fps,
@@ -143,6 +155,8 @@ Result<CameraPath> ResamplePath(const CameraPath& path, std::optional<double> fp
       const size_t i = moment * views + view;
       resampled.cameras[i] = curves.At(std::min(static_cast<double>(moment) * step, last));
       resampled.cameras[i].time_s = static_cast<double>(i) / new_fps;
+      resampled.cameras[i].recording_time =
+          RecordingTimeAt(path, std::min(static_cast<double>(moment) * step, last));
     }
   }
   LF_RETURN_IF_ERROR(AddShutter(path.shutter, &resampled));
@@ -171,6 +185,7 @@ Result<void> AddShutter(const Shutter& shutter, CameraPath* path) {
       const double place = static_cast<double>(i) + InstantOffset(shutter, k);
       RenderCamera camera = curves.At(std::clamp(place, 0.0, last));
       camera.time_s = place / path->fps;
+      camera.recording_time = RecordingTimeAt(*path, std::clamp(place, 0.0, last));
       path->instants.push_back(camera);
     }
   return {};

@@ -74,6 +74,8 @@ std::vector<std::string> LostIn(PathFormat format, const CameraPath& path) {
         path.views, note));
   if (path.shutter.exists())
     lost.emplace_back("the shutter, so that a moving camera does not blur its frames");
+  if (path.cameras.front().recording_time)
+    lost.emplace_back("the time of the light field video that its frames show");
   return lost;
 }
 

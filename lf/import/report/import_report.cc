@@ -93,6 +93,32 @@ std::string ImagesText(const ImportReport& report) {
                             report.faults->broken.size());
 }
 
+// Returns "9 cameras, 300 times from 0 to 9.967 s, 30 per second; shows 4.5 s".
+std::string VideoText(const ImportReport& report) {
+  const VideoFacts& video = *report.video;
+  const char* const unit = video.is_in_seconds ? " s" : "";
+  std::string text;
+  if (video.camera_count > 0) text = fmt::format("{} cameras, ", video.camera_count);
+  text += fmt::format("{} times from {} to {}{}", video.slice_count, Brief(video.begin),
+                      Brief(video.end), unit);
+  if (video.rate)
+    text += fmt::format(", {} per {}", Brief(*video.rate), video.is_in_seconds ? "second" : "unit");
+  if (report.shown_times.size() == 1)
+    text += fmt::format("; shows {}{}", Brief(report.shown_times[0]), unit);
+  return text;
+}
+
+Json VideoJson(const ImportReport& report) {
+  const VideoFacts& video = *report.video;
+  return {{"cameras", video.camera_count > 0 ? Json(video.camera_count) : Json(nullptr)},
+          {"times", video.slice_count},
+          {"begin", video.begin},
+          {"end", video.end},
+          {"rate", video.rate ? Json(*video.rate) : Json(nullptr)},
+          {"shown", report.shown_times},
+          {"in_seconds", video.is_in_seconds}};
+}
+
 std::string PixelsText(const FootprintFacts& pixels) {
   return fmt::format("show {} ({})",
                      pixels.footprint == PixelFootprint::kArea
@@ -199,6 +225,7 @@ std::string ReportText(const ImportReport& report) {
   AddLine("light field", report.light_field, &lines);
   AddLine("first image", report.first_image, &lines);
   AddLine("images", ImagesText(report), &lines);
+  if (report.video) AddLine("video", VideoText(report), &lines);
   if (report.pixels) AddLine("pixels", PixelsText(*report.pixels), &lines);
   if (report.agreement) AddLine("agreement", Spelled(TextOf(*report.agreement)), &lines);
   if (report.profile) AddLine("colours", TextOf(*report.profile), &lines);
@@ -261,6 +288,7 @@ std::string ReportJson(const ImportReport& report) {
     json["broken"] = report.faults->broken.size();
     if (report.faults->left_out_count > 0) json["not_stored"] = report.faults->left_out_count;
   }
+  if (report.video) json["video"] = VideoJson(report);
   json["pixels"] = OrNull(report.pixels);
   json["agreement"] = OrNull(report.agreement);
   json["colour_profile"] = OrNull(report.profile);

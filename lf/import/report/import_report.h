@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
@@ -15,6 +16,7 @@
 #include "lf/import/check/exif_gains.h"
 #include "lf/import/check/find_profiles.h"
 #include "lf/import/exposure/match_exposure.h"
+#include "lf/light_field/model/light_field.h"
 #include "lf/light_field/model/radiance.h"
 
 namespace lf {
@@ -30,7 +32,11 @@ struct ImportReport {
   std::string first_image;  // path of the first image's file, which shows where images were found
   CaptureReport capture;
   std::optional<ImageFaults> faults;  // nullopt: the files were not checked
-  size_t excluded_count = 0;          // number of LF images that were left out on purpose
+  // Facts about a light field video, and the recording times that are open; nullopt and empty for
+  // other light fields.
+  std::optional<VideoFacts> video;
+  std::vector<double> shown_times;
+  size_t excluded_count = 0;  // number of LF images that were left out on purpose
   // nullopt: the files were not checked, or faults of the files forbid that anything is written
   std::optional<FootprintFacts> pixels;
   std::optional<Agreement> agreement;       // nullopt as `pixels`

@@ -15,6 +15,7 @@ LightField SixCameras() {
     field.cameras.emplace_back().intrinsics_index = i;
     field.image_names.push_back(std::to_string(i));
     field.mask_names.push_back("mask " + std::to_string(i));
+    field.times.push_back(10 * i);
   }
   return field;
 }
@@ -26,6 +27,7 @@ TEST(KeepImages, KeepsCamerasNamesAndMasksTogether) {
   ASSERT_EQ(field.size(), 3u);
   EXPECT_EQ(field.image_names, (std::vector<std::string>{"0", "3", "5"}));
   EXPECT_EQ(field.mask_names, (std::vector<std::string>{"mask 0", "mask 3", "mask 5"}));
+  EXPECT_EQ(field.times, (std::vector<double>{0, 30, 50}));
   for (size_t i = 0; i < 3; ++i) EXPECT_EQ(field.cameras[i].intrinsics_index, kept[i]);
 }
 

@@ -51,6 +51,17 @@ struct LfCamera {
 };
 static_assert(sizeof(LfCamera) == 120);
 
+// Facts about a light field video, and what of it is shown. Times are recording times: seconds from
+// the first frames of the videos or, in a transforms.json, the numbers of its key "time".
+struct VideoFacts {
+  size_t camera_count = 0;  // 0: unknown, because the LF images do not tell which camera took them
+  size_t slice_count = 0;   // number of recording times
+  double begin = 0, end = 0;   // the first and the last of them
+  std::optional<double> rate;  // slices for each unit of time; unset: they are not evenly spaced
+  bool is_in_seconds = true;   // false: the unit of time is that of a transforms.json
+  bool is_of_path = false;     // true: the slices that are open are those that a path shows
+};
+
 // lf::Open() makes one of a calibration. A program may also make one of `cameras`, `intrinsics`,
 // `image_names` and `folder`; the other members have defaults.
 struct LightField {
@@ -68,6 +79,14 @@ struct LightField {
   RadianceEncoding encoding;
   double unit_m = 1;                      // metres per world unit
   std::optional<DepthRange> depth_range;  // depths of the scene, if the calibration states them
+
+  // The recording time of each LF image; empty if none is known.
+  std::vector<double> times;
+  // The slices of a light field video that are open: ascending recording times, each of which is
+  // that of some LF images. A frame takes LF images of one slice alone
+  // (light_field/model/time_slices.h). Empty: frames take LF images of any time.
+  std::vector<double> slice_times;
+  std::optional<VideoFacts> video;  // set for light field videos
 
   size_t size() const { return cameras.size(); }
   PinholeCamera Camera(LfImageId id) const {

@@ -19,6 +19,10 @@ LightFieldIdentity IdentityOf(const LightField& light_field) {
     // Only the mark is hashed, so that light fields without virtual LF images keep their hash.
     if (camera.is_virtual) calibration.Add(std::string("virtual"));
   }
+  // The times are hashed only where frames depend on them, so that other light fields keep their
+  // hash.
+  if (light_field.slice_times.size() > 1)
+    for (const double time : light_field.times) calibration.Add(time);
   for (const Intrinsics& k : light_field.intrinsics) calibration.Add(k);
   return {light_field.size(), names.Text(), calibration.Text()};
 }

@@ -13,7 +13,8 @@ namespace lf {
 struct LightFieldIdentity {
   size_t image_count = 0;
   std::string names;  // hash of the names of images and masks, without the folder
-  // Hash of the poses, gains and intrinsics of all cameras, and of which of them are virtual.
+  // Hash of the poses, gains and intrinsics of all cameras, of which of them are virtual, and of
+  // the recording times if several slices are open.
   std::string calibration;
 
   friend bool operator==(const LightFieldIdentity&, const LightFieldIdentity&) = default;

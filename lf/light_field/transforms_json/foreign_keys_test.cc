@@ -64,5 +64,32 @@ TEST(ForeignKeys, NanHarmsOnlyTheKeysThatAreRead) {
                    {"frames[0] (a.png): \"fl_x\" is \"-Infinity\""});
 }
 
+Result<LightField> ParseTwoTimes(const std::string& first, const std::string& second) {
+  const std::string frame =
+      R"({{"file_path": "{}.png", {} "transform_matrix": [[1,0,0,1], [0,1,0,2], [0,0,1,3]]}})";
+  return ParseTransformsJson(fmt::format(R"({{"fl_x": 5, {}, "frames": [{}, {}]}})", kFrameSize,
+                                         fmt::format(fmt::runtime(frame), "a", first),
+                                         fmt::format(fmt::runtime(frame), "b", second)),
+                             "data/transforms.json");
+}
+
+TEST(ForeignKeys, FramesMayStateTheirTimes) {
+  Result<LightField> light_field = ParseTwoTimes(R"("time": 0.25,)", R"("time": -3,)");
+  ASSERT_TRUE(light_field) << light_field.error().message;
+  EXPECT_EQ(light_field->times, (std::vector<double>{0.25, -3}));
+}
+
+TEST(ForeignKeys, TimesCountOnlyIfAllFramesStateANumber) {
+  for (const char* const other :
+       {"", R"("time": null,)", R"("time": "noon",)", R"("time": [1],)"}) {
+    for (const bool is_first : {true, false}) {
+      const Result<LightField> light_field =
+          is_first ? ParseTwoTimes(other, R"("time": 1,)") : ParseTwoTimes(R"("time": 1,)", other);
+      ASSERT_TRUE(light_field) << light_field.error().message;
+      EXPECT_TRUE(light_field->times.empty()) << other;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace lf

@@ -3,13 +3,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include "lf/core/byte_stream.h"
+#include "lf/core/log.h"
 #include "lf/light_field/model/distinct_intrinsics.h"
 #include "lf/light_field/model/find_images.h"
 #include "lf/light_field/transforms_json/frame_cutter.h"
@@ -29,6 +33,8 @@ using Event = json::parse_event_t;
 
 constexpr size_t kMaxFrameCount = size_t{1} << 24;
 constexpr int kMaxDepth = 8;  // values nested more deeply are not read, so that they take no memory
+
+constexpr double kNoTime = std::numeric_limits<double>::quiet_NaN();
 
 constexpr NumberRule kFinite = {"finite", [](double) { return true; }};
 constexpr NumberRule kGain = {"a factor from 1e-6 to 1e6",
@@ -123,6 +129,7 @@ class Reader {
     LF_ASSIGN_OR_RETURN(const std::optional<double> unit_m, top.Number("lf_unit_m", kUnit));
     light_field_.unit_m = unit_m.value_or(1);
     LF_RETURN_IF_ERROR(ReadDepthRange(top));
+    FinishTimes();
     if (!light_field_.mask_names.empty()) light_field_.mask_names.resize(frame_count());
     return std::move(light_field_);
   }
@@ -144,6 +151,7 @@ class Reader {
     LF_ASSIGN_OR_RETURN(const IntrinsicsKeys keys, ReadIntrinsicsKeys(fields));
     camera.intrinsics_index = distinct_keys_.IndexOf(keys);
     LF_RETURN_IF_ERROR(ReadMask(fields, index));
+    ReadTime(fields, index);
     light_field_.cameras.push_back(camera);
     // instant-ngp adds the same extension for the frames of Blender's NeRF scenes.
     if (!fs::path(*name).has_extension()) *name += ".png";
@@ -205,6 +213,30 @@ class Reader {
     light_field_.mask_names.resize(index + 1);
     light_field_.mask_names.back() = *std::move(mask);
     return {};
+  }
+
+  // Reads the recording time. Other programs may mean something else by a "time" that is no number:
+  // it is no error.
+  void ReadTime(const JsonFields& fields, size_t index) {
+    if (!fields.Has("time")) return;
+    const Result<std::optional<double>> time = fields.Number("time", kFinite);
+    light_field_.times.resize(index, kNoTime);
+    light_field_.times.push_back(time && *time ? **time : kNoTime);
+  }
+
+  // Drops the times unless all frames have one.
+  void FinishTimes() {
+    std::vector<double>& times = light_field_.times;
+    if (times.empty()) return;
+    times.resize(frame_count(), kNoTime);
+    const auto lost =
+        std::find_if(times.begin(), times.end(), [](double time) { return std::isnan(time); });
+    if (lost == times.end()) return;
+    LogWarning(
+        "{}: \"time\" of some frames is not used, because frame {} ({}) does not state one as a "
+        "number",
+        path_.string(), lost - times.begin(), light_field_.image_names[lost - times.begin()]);
+    times.clear();
   }
 
   Result<void> ReadDepthRange(const JsonFields& fields) {

@@ -149,6 +149,10 @@ Result<void> AddFrame(const LightField& light_field, size_t index, JsonText* out
                   light_field.intrinsics[top_index], " ", out);
   }
   AddGains(camera, out);
+  if (!light_field.times.empty()) {
+    out->Add(", \"time\": ");
+    out->AddNumber(light_field.times[index]);
+  }
   if (!light_field.mask_names.empty() && !light_field.mask_names[index].empty()) {
     out->Add(", \"lf_mask\": ");
     LF_RETURN_IF_ERROR(out->AddString(light_field.mask_names[index]));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "lf/light_field/model/time_slices.h"
 #include "lf/selection/lens_weights/frame_weights.h"
 
 namespace lf {
@@ -19,6 +20,7 @@ std::vector<LfImageId> CamerasAroundLens(const ImageIndex& index, const RenderCa
   middle.pinhole.intrinsics.width_px = middle.pinhole.intrinsics.height_px = 0;
   const CameraTree& tree = index.tree();
   const LensPlane plane(frame);
+  const SliceOfFrame slice(index.light_field(), frame.recording_time);
   // The radius of the lens that is searched begins with the larger of the lens radius and a
   // thousandth of the distance to the focus point. It doubles up to 29 times.
   constexpr int kDoublings = 30;
@@ -31,6 +33,7 @@ std::vector<LfImageId> CamerasAroundLens(const ImageIndex& index, const RenderCa
     size_t count = 0;
     tree.ForEachLeaf(SeenRegion(middle), [&](size_t leaf, bool /*all_inside*/) {
       for (const LfImageId id : tree.Leaf(leaf)) {
+        if (!slice.Holds(id)) continue;
         if (recorded_only && index.light_field().cameras[id.value].is_virtual) continue;
         const Vec3 centre_world = index.light_field().Camera(id).CentreWorld();
         ids.push_back(id);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lf/camera/ray_through.h"
+#include "lf/light_field/model/time_slices.h"
 #include "lf/render/collect/around_lens.h"
 #include "lf/selection/lens_weights/image_feather.h"
 
@@ -76,7 +77,8 @@ RayWeights FrameLens::WeightsOf(LfImageId id) const {
 bool FrameLens::Takes(LfImageId id) const {
   const LfCamera& of_image = light_field_.cameras[id.value];
   if (!weights_)
-    return !(is_of_recorded_ && of_image.is_virtual) && IsWithinAngle(of_image, camera_, select_);
+    return SliceOfFrame(light_field_, camera_.recording_time).Holds(id) &&
+           !(is_of_recorded_ && of_image.is_virtual) && IsWithinAngle(of_image, camera_, select_);
   const std::optional<size_t> index = IndexOf(id);
   if (!index || !weights_->TakesPart(*index)) return false;
   // The share of an LF camera may be so small that its weight is rounded to 0.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "lf/core/geometry.h"
@@ -34,6 +35,34 @@ Result<void> CheckSlab(const Package& package, const FilmSettings& film,
           "expected a direction within {:.0f} degrees of the viewing directions of all frames",
           given.x(), given.y(), given.z(), frame.value, off_deg, kMost_deg));
   }
+  return {};
+}
+
+// Checks that light field and path agree about the times of a light field video.
+Result<void> CheckRecordingTimes(const Package& package, const FilmSettings& film) {
+  const LightField& light_field = package.light_field;
+  const std::span<const RenderCamera> cameras = package.path.AllInstants();
+  const auto moves = [](const RenderCamera& camera) { return camera.recording_time.has_value(); };
+  const bool has_one_time = light_field.slice_times.size() < 2;
+  if (has_one_time && std::any_of(cameras.begin(), cameras.end(), moves))
+    return UsageError(
+        "the path moves through time (its key time), but the light field shows one time: open the "
+        "times of the path, or remove the key time from the path");
+  if (has_one_time) return {};
+  if (!std::all_of(cameras.begin(), cameras.end(), moves))
+    return UsageError(
+        "several times of a light field video are open, and the path does not tell which of them "
+        "its frames show: state its key time, or open one time ({time})");
+  if (light_field.encoding.masks_clipped)
+    return UsageError(
+        "the LF images are exposures of the same poses (lf_clipped), which cannot be told from "
+        "those "
+        "of other times: render each time as a film of its own ({time})");
+  if (film.Rebins())
+    return UsageError(fmt::format(
+        "{{mode {}}}: the frames of a path that moves through time cannot share rebinned rays: use "
+        "{{mode collect}}, or render each time as a film of its own ({{time}})",
+        NameOf(film.mode)));
   return {};
 }
 
@@ -151,6 +180,7 @@ Result<void> CheckFilmSettings(const Package& package, const FilmSettings& optio
         "package {} was made with {{max_images {}}}, and contains no more LF images of any "
         "frame: give lfrenderer at most this {{max_images}}, or make the package again",
         package.name, *most));
+  LF_RETURN_IF_ERROR(CheckRecordingTimes(package, film));
   LF_RETURN_IF_ERROR(CheckShard(film));
   if (package.whole_virtual_count > 0 && film.guard) LF_RETURN_IF_ERROR(CheckGuard(package, film));
   if (package.whole_virtual_count > 0 && !film.guard &&

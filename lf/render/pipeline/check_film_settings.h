@@ -20,7 +20,8 @@ namespace lf {
 // weights by area need its area; if the path has a shutter but the mode is not kCollect; or if the
 // light field is densified but its frames cannot be guarded, because they have rebinned rays, the
 // path has a shutter, LF images are mosaics, or the package lacks the LF cameras
-// beside the lens.
+// beside the lens; or if the path moves through time and one time is open, or the other way round,
+// or the mode is not kCollect.
 Result<void> CheckFilmSettings(const Package& package, const FilmSettings& options,
                                const std::vector<FrameId>& frames);
 

@@ -40,6 +40,20 @@ std::vector<OutputFile> OutputsOf(const Package& package, const RenderOptions& o
   return outputs;
 }
 
+// Returns the videos beside the calibration of a light field video, which the render must not
+// replace by its own. Its LF images are decoded frames, which lie elsewhere.
+std::vector<fs::path> RecordedVideosOf(const LightField& light_field) {
+  std::vector<fs::path> videos;
+  if (!light_field.video || light_field.source.empty()) return videos;
+  std::error_code error;
+  const fs::path folder = fs::is_directory(light_field.source, error)
+                              ? light_field.source
+                              : fs::absolute(light_field.source).parent_path();
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+    if (IsVideoName(it->path())) videos.push_back(it->path());
+  return videos;
+}
+
 }  // namespace
 
 std::vector<fs::path> FilesOfLightField(const LightField& light_field, const fs::path& opened) {
@@ -51,6 +65,7 @@ std::vector<fs::path> FilesOfLightField(const LightField& light_field, const fs:
   for (const auto* names : {&light_field.image_names, &light_field.mask_names})
     for (const std::string& name : *names)
       if (!name.empty()) files.push_back(light_field.folder / name);
+  for (fs::path& video : RecordedVideosOf(light_field)) files.push_back(std::move(video));
   return files;
 }
 
@@ -87,6 +102,7 @@ Result<void> CheckOutputs(const Package& package, const RenderOptions& options) 
                       MakeFilmOutputs(OutputsOf(package, options), to.output_folder, to.video));
   LF_RETURN_IF_ERROR(outputs.CheckReplacesNone(to.inputs));
   const LightField& field = package.light_field;
+  LF_RETURN_IF_ERROR(outputs.CheckReplacesNone(RecordedVideosOf(field)));
   LF_RETURN_IF_ERROR(outputs.CheckReplacesNone(field.folder, ImageFileNames(field), "an LF image"));
   return outputs.CheckReplacesNone(field.folder, field.mask_names, "a mask of an LF image");
 }

@@ -17,7 +17,8 @@
 namespace lf {
 
 // Returns the files of a light field that was opened from the file or folder `opened`: the image
-// files and masks or, if it is a packed store, the file of the store; and its transforms.json.
+// files and masks or, if it is a packed store, the file of the store; its transforms.json; and the
+// mp4 files beside it if it is a light field video.
 std::vector<std::filesystem::path> FilesOfLightField(const LightField& light_field,
                                                      const std::filesystem::path& opened);
 
@@ -36,7 +37,8 @@ Result<OutputFiles> MakeFilmOutputs(std::vector<OutputFile> outputs,
                                     const std::optional<std::filesystem::path>& video);
 
 // Checks the files that the render writes, the video included. kUsage: one of them is an LF image
-// or a mask of the package, or one of options.folder.inputs; and errors of MakeFilmOutputs().
+// or a mask of the package, a recorded video, or one of options.folder.inputs; and errors of
+// MakeFilmOutputs().
 Result<void> CheckOutputs(const Package& package, const RenderOptions& options);
 
 }  // namespace lf

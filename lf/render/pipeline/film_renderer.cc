@@ -106,7 +106,7 @@ std::vector<TakingFrame> FilmRenderer::TakingInstants(const Frame& frame) const 
 // rays have weight 1.
 ImageWeights FilmRenderer::WeightsIn(const FrameLens& lens) const {
   if (film_.lens_weights == LensWeights::kNone && !setup_.package().choices.max_angle_rad &&
-      !setup_.is_guarded())
+      !setup_.is_guarded() && setup_.light_field().slice_times.size() < 2)
     return {};
   return [&lens](LfImageId id) { return lens.WeightsOf(id); };
 }

@@ -76,6 +76,10 @@ std::string CameraHash(const RenderCamera& camera) {
     hasher.Add(camera.hood.radius_w);
   }
   if (camera.transmission) hasher.Add(camera.transmission->Text());
+  if (camera.recording_time) {
+    hasher.Add(std::string("recording time"));
+    hasher.Add(*camera.recording_time);
+  }
   if (camera.surface) hasher.Add("surface " + camera.surface->Digest());
   hasher.AddMatrix(camera.focus_plane.normal);
   hasher.Add(camera.focus_plane.offset_w);
@@ -134,6 +138,8 @@ RunInputs InputsOfCamera(FrameId frame, const RenderCamera& camera,
       {"frame.focus_plane",
        fmt::format("{} {}", Text(camera.focus_plane.normal), camera.focus_plane.offset_w)}};
   if (camera.surface) inputs.emplace_back("frame.focal_surface", camera.surface->Digest());
+  if (camera.recording_time)
+    inputs.emplace_back("frame.recording_time", fmt::format("{}", *camera.recording_time));
   inputs.emplace_back("frame.camera", CameraHash(camera));
   if (shutter)
     inputs.emplace_back("frame.shutter",
