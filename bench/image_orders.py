@@ -44,7 +44,7 @@ def measure(build, folder, density, size):
     photograph(build, field, density, size, "--calibration-only")
     path.write_text(path_yaml(WORKLOADS["bokeh"], [int(length) // 2 for length in size.split("x")]))
     rows = []
-    for weights, order in itertools.product(WEIGHTS, ("shuffle", "round-robin", "area")):
+    for weights, order in itertools.product(WEIGHTS, ("spread", "shuffle", "round-robin", "area")):
         out = folder / f"{order}-{weights}"
         results.call([build / "bin/lfpreprocessor", field, path, "-o", out, "-q", "--order", order,
                       "--frames-per-package", 1, "--allow-missing", "100%", *WEIGHTS[weights]])
