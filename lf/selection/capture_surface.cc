@@ -89,8 +89,8 @@ PrincipalAxes AxesOf(const std::vector<Vec3>& points) {
 std::optional<Vec3> CentreOfSphere(const std::vector<Vec3>& points,
                                    const PrincipalAxes& principal) {
   constexpr double kBetter = 0.5;  // largest ratio of the mean distances from sphere and plane
-  // Where points extend this little, the centre is in their middle: a narrow band in a half circle
-  // tells nothing of the centre across the band.
+  // The centre is in the middle of the points along an axis on which they extend this little,
+  // because a narrow band in a half circle tells nothing of the centre across the band.
   const double least_variance = 0.01 * principal.variances[0];
   if (!(principal.variances[1] > least_variance)) return std::nullopt;
   const auto count = static_cast<double>(points.size());
