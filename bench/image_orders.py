@@ -30,7 +30,7 @@ def filled_after_a_tenth(packages):
     frames = []
     for package in packages:
         with sqlite3.connect(f"file:{package}?immutable=1", uri=True) as database:
-            frames.append(dict(database.execute("select place, rays from lf_images where frames > 0")))
+            frames.append(dict(database.execute("select rank, rays from lf_images where frames > 0")))
     places = sorted(set().union(*frames))
     first = set(places[:len(places) // 10])
     return [sum(rays for place, rays in frame.items() if place in first) for frame in frames if frame]
