@@ -33,7 +33,6 @@ RUNS = {  # options with which a run changes the content of the frames
     "noise": ["--stop-when", "noise<=0.02"],
     "noise killed": ["--stop-when", "noise<=0.02"],
     "max-images": ["--max-images", MOST_IMAGES],
-    "shuffle": ["--order", "shuffle", "--max-images", MOST_IMAGES],
     "round-robin": ["--order", "round-robin", "--max-images", MOST_IMAGES],
     "area": ["--order", "area", "--max-images", MOST_IMAGES],
 }
@@ -65,7 +64,7 @@ def render_mode(mode):
 
 
 def is_order(run_name):
-    return run_name in ("shuffle", "round-robin", "area")
+    return run_name in ("round-robin", "area")
 
 
 class Matrix(World):
