@@ -30,7 +30,7 @@ def filled_after_a_tenth(packages):
     frames = []
     for package in packages:
         with sqlite3.connect(f"file:{package}?immutable=1", uri=True) as database:
-            frames.append(dict(database.execute("select place, rays from lf_images where frames > 0")))
+            frames.append(dict(database.execute("select rank, rays from lf_images where frames > 0")))
     places = sorted(set().union(*frames))
     first = set(places[:len(places) // 10])
     return [sum(rays for place, rays in frame.items() if place in first) for frame in frames if frame]
@@ -44,7 +44,7 @@ def measure(build, folder, density, size):
     photograph(build, field, density, size, "--calibration-only")
     path.write_text(path_yaml(WORKLOADS["bokeh"], [int(length) // 2 for length in size.split("x")]))
     rows = []
-    for weights, order in itertools.product(WEIGHTS, ("shuffle", "round-robin", "area")):
+    for weights, order in itertools.product(WEIGHTS, ("spread", "shuffle", "round-robin", "area")):
         out = folder / f"{order}-{weights}"
         results.call([build / "bin/lfpreprocessor", field, path, "-o", out, "-q", "--order", order,
                       "--frames-per-package", 1, "--allow-missing", "100%", *WEIGHTS[weights]])

@@ -45,6 +45,7 @@ TABLES = {
                               "--density 0.005 --size 48x32 --packages 1,2 --runs 1"),
     "noise_remedies": ("rebinning", "bench/quality/noise_remedies.py {build} {data}/groundtruth", "--only nothing"),
     "noise_rule": ("checkpoints", "bench/quality/noise_rule.py {build} --data {data}", None),
+    "order_quality": ("checkpoints", "bench/quality/order_quality.py {build}/bin {data}", "--only cards --seeds 1"),
     "codec_speed": ("codec", "bench/codec_speed.py {build} --data {data} --runs 3", "--runs 2"),
     "focus_numpy": ("focus", "bench/focus_numpy.py {build} {data}/data/stanford-cards-9x9", "--runs 1 --planes 2"),
     "scale": ("performance", "bench/scale.py {build}", "--counts 100,200 --weighed 100 --frames 5 --packages 2"),

@@ -122,6 +122,8 @@ void AddQuality(CLI::App& app, Arguments& a) {
   a.settings.AddTo(quality, "max_angle_deg");
   a.settings.AddTo(quality, "order",
                    "Order in which frames take LF images\n"
+                   "spread: LF images whose positions are spread evenly over the lens, however "
+                   "many are taken; by --seed\n"
                    "shuffle: random, by --seed\n"
                    "round-robin: always an LF image for the frame with the fewest rays\n"
                    "area: LF images with the most rays first");

@@ -182,8 +182,9 @@ lf::Result<void> PrintText(const Arguments& a, const lf::CommonOptions& common) 
       frames.push_back(lf::FrameId{number});
   lf::ThreadPool pool(common.threads);
   LF_RETURN_IF_ERROR(lf::AddFocalSurfaces(a.path, light_field, {frames, &pool, nullptr}, &path));
-  return lf::WriteSceneText(light_field, path, frames, common.seed, Needs(a.page.film), pool,
-                            lf::PrintReport);
+  return lf::WriteSceneText(light_field, path, frames,
+                            lf::RanksOf(a.page.film.order, light_field, common.seed),
+                            Needs(a.page.film), pool, lf::PrintReport);
 }
 
 // Warns on stderr and on the page if images and poses do not belong together. Runs while the page

@@ -188,7 +188,7 @@ void RenderArguments::AddRenderingTo(CLI::App& app) {
 
 OfferedOptions RenderArguments::Common() {
   return {.threads = true,
-          .seed = "Seed of --order shuffle and of --kept edges",
+          .seed = "Seed of --order spread, --order shuffle and --kept edges",
           .strict =
               "Stop at a missing or broken LF image\n"
               "Without this option it is left out.",
@@ -211,7 +211,7 @@ Result<void> RenderArguments::Check(bool seed_given) const {
           "given: leave it out, or make the packages again with lfpreprocessor --seed");
     FilmSettings film;
     LF_RETURN_IF_ERROR(settings.Set(&film));
-    if (film.order != ImageOrder::kShuffle)
+    if (film.order != FilmSettings().order)
       return UsageError(
           "--order cannot be used with packages, which contain the order that lfpreprocessor was "
           "given: leave it out, or make the packages again with lfpreprocessor --order");

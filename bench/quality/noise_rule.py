@@ -1,23 +1,24 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Checks that frames stopped by --stop-when "noise<=X" have the requested noise, and that this noise equals their
-difference from frames of all LF images.
+"""Compares the noise of frames that --stop-when "noise<=X" ends with their difference from frames of all LF images.
 
-usage: bench/quality/noise_rule.py BUILD_DIR [--data ../shared] [--size 480x320] [--noise 0.012,0.009,...]
-                           [--only WAY,...] [--name NAME] [--write PAGE]
+usage: bench/quality/noise_rule.py BUILD_DIR [--data ../shared] [--size 480x320] [--noise 0.024,0.016,...] [--seeds 3]
+                           [--only WAY,...] [--captures NAME,...] [--name NAME] [--write PAGE]
        bench/quality/noise_rule.py --again JSON [--write PAGE]
 
-The light field is blender-shop with 729 LF images; most of its LF cameras are in the lens, which is 0.9 m wide. Three
-frames are focused on the foreground, the counter and the shelf behind it, and rendered in the ways of WAYS.
+Three captures are filmed by lenses that see most of their LF cameras: blender-shop (729 LF images; focused on the
+foreground, the counter and the shelf behind it), the ground truth `planar` (361), and 260 LF cameras of a synthetic
+scene at random positions. Each frame is rendered in the ways of WAYS with all LF images, and with a rule for every X,
+in the orders of ORDERS with each of the seeds.
 
-Each frame is rendered with all LF images, and with a rule for every X. The kept plates contain the second moments of
-the measured elements (progress.noise), from which the standard error s of each element is computed here again. LF
-images are taken in random order, and N of them contribute to an element in the end. After n of them, its difference
-from its final value is expected to have the standard deviation s * sqrt(1 - n / N). The script compares the measured
-and the expected root mean square of the difference over the measured elements and channels, and the 90th percentile of
-its absolute value; the expected percentile assumes that differences are normally distributed.
+The kept plates contain the second moments of the measured elements (progress.noise), from which the standard error s of
+each element is computed here again. N LF images contribute to an element in the end. After n of them, if they were
+drawn at random, its difference from its final value would have the standard deviation s * sqrt(1 - n / N). The script
+compares the measured and this expected root mean square of the difference over the measured elements and channels, and
+the 90th percentile of its absolute value; the expected percentile assumes that differences are normally distributed.
 """
 import argparse
+import itertools
 import json
 import math
 import pathlib
@@ -30,15 +31,16 @@ import numpy as np
 import zstandard
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent))
+import densify_captures as captures
+import order_quality
 import record as results
 
 FOCUS = {"foreground": 6.3, "counter": 8.12, "shelf": 13}  # metres, see the data's README
+ORDERS = ("spread", "shuffle")
 WAYS = {
     "nearest": ["--mode", "collect", "--estimator", "nearest", "--lens-weights", "none"],
     "default": ["--mode", "collect", "--estimator", "bilinear", "--filter", "auto",
                 "--lens-weights", "auto"],
-    "hybrid": ["--mode", "hybrid", "--estimator", "bilinear", "--filter", "auto",
-               "--lens-weights", "auto"],
 }
 PATH = """format: lfpath 1
 fps: 1
@@ -59,9 +61,41 @@ def write_path(folder, size):
     return path
 
 
+def shop(bench, size):
+    return bench.shared / "data/blender-shop/images", write_path(bench.folder, size)
+
+
+def planar(bench, size):
+    calibration = bench.shared / "groundtruth/data/planar/transforms.json"
+    return calibration, joined(bench, size, order_quality.quality.read_field(calibration), "planar", 0.0085,
+                               (0.2, 0.5))
+
+
+def at_random(bench, size):
+    calibration, _ = order_quality.at_random(bench)
+    return calibration, joined(bench, size, order_quality.quality.read_field(calibration), "random", 0.05,
+                               (0.45, 1.6))
+
+
+def joined(bench, size, field, name, diameter, focuses):
+    """Writes the path of a frame for each focus distance."""
+    width, height = (length // 2 for length in size)
+    path = captures.middle_path(field, bench.folder / f"{name}.yaml", (width, height),
+                                field["fl_x"] * width / field["w"], diameter, focuses[0])
+    keys = ", ".join(f"{{time: {i / 25}, value: {focus}, interpolation: step}}" for i, focus in enumerate(focuses))
+    lines = path.read_text().replace("frames: 1\n", f"frames: {len(focuses)}\n").splitlines()
+    lines = [line for line in lines if not line.startswith("  focus_distance:")]
+    path.write_text("\n".join([*lines, "keyframes:", f"  focus_distance: [{keys}]", ""]))
+    return path
+
+
+CAPTURES = {"shop": shop, "planar": planar, "random": at_random}
+
+
 def render(build, field, path, out, *options):
-    subprocess.run([build / "bin/lfrenderer", field, path, "-o", out, "-q", "--format", "exr-float",
-                    "--no-contact-sheet", "--keep-plates", *options], check=True)
+    subprocess.run([str(word) for word in (
+        build / "bin/lfrenderer", field, path, "-o", out, "-q", "--format", "exr-float", "--no-contact-sheet",
+        "--keep-plates", *options)], check=True)
     return [frame["noise"] for frame in json.loads((out / "report.json").read_text())["frames"]]
 
 
@@ -94,7 +128,7 @@ class Measured:
         words = words[np.ix_(y, x)]
         self.count = (words >> np.uint64(40)).astype(float)
         self.sum = (words & np.uint64((1 << 40) - 1)).astype(float)
-        pedestal, scale = map(float, entries["sheet.develop"].split()[:2])
+        pedestal, scale = map(float, entries["plate.develop"].split()[:2])
         squares, cross, counts, self.images = np.moveaxis(
             np.array(numbers, dtype=float).reshape(rows, columns, 3, 4), 3, 0)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -130,48 +164,61 @@ def compare(stopped, whole):
             "most_expected": percentile_of_normals(expected, 0.9)}
 
 
-def measure(build, data, size, noises, ways):
+def measure(build, data, size, arguments, ways):
     rows = []
+    noises, seeds = map(float, arguments.noise.split(",")), range(arguments.seeds)
+    cases = list(itertools.product(ORDERS, noises, seeds))
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
-        path, field = write_path(folder, size), data / "data/blender-shop/images"
-        for way in ways:
-            options = WAYS[way]
-            whole = folder / f"whole {way}"
-            ends = render(build, field, path, whole, *options, "--require", "noise<=1000")
-            for noise in noises:
-                out = folder / f"{noise} {way}"
-                frames = render(build, field, path, out, *options, "--stop-when", f"noise<={noise}")
-                for number, (frame, end) in enumerate(zip(frames, ends), 1):
-                    name = f"frame_{number:04d}.plate"
-                    rows.append({"way": way, "focus": list(FOCUS)[number - 1], "asked": noise, **frame,
-                                 "ranks_in_all": end["ranks"], "lf_images_in_all": end["lf_images"],
-                                 "reached_by_all": end["reached"],
-                                 **compare(Measured(out / name), Measured(whole / name))})
-                    print(rows[-1], flush=True)
+        bench = order_quality.Bench(build / "bin", data, folder)
+        for capture in arguments.captures.split(","):
+            field, path = CAPTURES[capture](bench, size)
+            for way, options in ways.items():
+                whole, out = folder / f"whole {capture} {way}", folder / "stopped"
+                ends = render(build, field, path, whole, *options, "--require", "noise<=1000")
+                for order, noise, seed in cases:
+                    frames = render(build, field, path, out, *options, "--order", order, "--seed", seed, "--stop-when",
+                                    f"noise<={noise}", "--overwrite")
+                    for number, (frame, end) in enumerate(zip(frames, ends), 1):
+                        name = f"frame_{number:04d}.plate"
+                        rows.append({"capture": capture, "way": way, "order": order, "seed": seed, "frame": number,
+                                     "asked": noise, **frame, "lf_images_in_all": end["lf_images"],
+                                     **compare(Measured(out / name), Measured(whole / name))})
+                        print(rows[-1], flush=True)
     return rows
 
 
+def is_early(row):
+    return row["lf_images"] < row["lf_images_in_all"]
+
+
+def ratio(rows, what):
+    """Returns the root mean square of measured differences divided by that of the expected ones, and their range."""
+    one = lambda chosen: math.sqrt(sum(row[what] ** 2 for row in chosen)
+                                   / sum(row[f"{what}_expected"] ** 2 for row in chosen))
+    each = [one([row]) for row in rows]
+    return f"**{one(rows):.2f}** ({min(each):.2f} to {max(each):.2f})"
+
+
 def table(rows):
-    lines = ["| way | focused on | X | noise reached | reached / X | ranks | LF images | difference to all "
-             "LF images: RMS, as expected | 90 % are below, as expected |", "|" + " --- |" * 9]
+    lines = ["| capture | way | order | X | frames ended early | LF images | noise reached / X | difference to all LF "
+             "images / as expected: RMS | 90 % are below |", "|" + " --- |" * 9]
+    groups = {}
     for row in rows:
-        early = row["ranks"] < row["ranks_in_all"]
-        differences = (f"{row['rms']:.5f}, {row['rms_expected']:.5f} | {row['most']:.5f}, "
-                       f"{row['most_expected']:.5f}" if early else "is that of all | ")
-        lines.append(f"| {row['way']} | {row['focus']} | {row['asked']} | {row['reached']:.5f} | "
-                     f"{row['reached'] / row['asked']:.3f} | {row['ranks']} of {row['ranks_in_all']} | "
-                     f"{row['lf_images']} of {row['lf_images_in_all']} | {differences} |")
-    ended = [row for row in rows if row["ranks"] < row["ranks_in_all"]]
-    ratios = [row["reached"] / row["asked"] for row in ended]
-    rms = [row["rms"] / row["rms_expected"] for row in ended]
-    most = [row["most"] / row["most_expected"] for row in ended]
-    lines += ["", f"{len(ended)} of {len(rows)} frames ended early, after {min(row['ranks'] for row in ended)} "
-              f"to {max(row['ranks'] for row in ended)} ranks: with {min(ratios):.3f} to {max(ratios):.3f} of "
-              f"the noise asked for. Their differences to frames of all LF images are {min(rms):.2f} to "
-              f"{max(rms):.2f} of the RMS expected, and {min(most):.2f} to {max(most):.2f} of the 90th "
-              "percentile expected. All elements of a frame take the same LF images, in one order for "
-              "all rows, so that their differences are no independent samples."]
+        groups.setdefault(tuple(row[key] for key in ("capture", "way", "order", "asked")), []).append(row)
+    for (capture, way, order, asked), group in groups.items():
+        early = [row for row in group if is_early(row)]
+        if not early:
+            continue
+        reached, images = ([row[key] for row in early] for key in ("reached", "lf_images"))
+        lines.append(f"| {capture} | {way} | {order} | {asked} | {len(early)} of {len(group)} | {min(images)} to "
+                     f"{max(images)} of {early[0]['lf_images_in_all']} | {min(reached) / asked:.2f} to "
+                     f"{max(reached) / asked:.2f} | {ratio(early, 'rms')} | {ratio(early, 'most')} |")
+    lines.append("")
+    for order in ORDERS:
+        early = [row for row in rows if is_early(row) and row["order"] == order]
+        lines.append(f"- {order}: differences of all {len(early)} frames together, divided by those expected of random "
+                     f"LF images: RMS {ratio(early, 'rms')}, 90th percentile {ratio(early, 'most')}.")
     return lines
 
 
@@ -182,8 +229,10 @@ def main():
     parser.add_argument("--data", type=pathlib.Path,
                         default=pathlib.Path(__file__).resolve().parents[2] / "../shared")
     parser.add_argument("--size", default="480x320")
-    parser.add_argument("--noise", default="0.024,0.018,0.014,0.011,0.009")
+    parser.add_argument("--noise", default="0.024,0.016,0.011")
     parser.add_argument("--only", default=",".join(WAYS), help="ways, with commas between")
+    parser.add_argument("--captures", default=",".join(CAPTURES), help="with commas between")
+    parser.add_argument("--seeds", type=int, default=3)
     results.add_options(parser)
     arguments = parser.parse_args()
     if arguments.again:
@@ -193,12 +242,11 @@ def main():
         size = [int(length) for length in arguments.size.split("x")]
         record["size"] = size
         record["ways"] = {way: WAYS[way] for way in arguments.only.split(",")}
-        record["rows"] = measure(arguments.build.resolve(), arguments.data.resolve(), size,
-                                 [float(noise) for noise in arguments.noise.split(",")],
+        record["rows"] = measure(arguments.build.resolve(), arguments.data.resolve(), size, arguments,
                                  record["ways"])
     ways = [f"{way} is `{' '.join(options)}`" for way, options in record["ways"].items()]
-    text = "\n".join([results.sentence(record), f"Frames of {record['size'][0]} x {record['size'][1]}; "
-                      + "; ".join(ways) + ".", ""] + table(record["rows"])) + "\n"
+    text = "\n".join([results.sentence(record), f"Frames of {record['size'][0]} x {record['size'][1]}, half as wide of "
+                      "`planar` and `random`; " + "; ".join(ways) + ".", ""] + table(record["rows"])) + "\n"
     results.publish(arguments, "quality/noise_rule.py", record, text)
 
 

@@ -15,6 +15,10 @@ namespace lf {
 // point is the farthest from all points before it (farthest-point sampling; Gonzalez, "Clustering
 // to Minimize the Maximum Intercluster Distance", 1985). Of equally far points the one with the
 // smallest index comes first.
+//
+// Live pictures weigh their LF images by the cells of these alone. This order is then as good as
+// OrderOfPoints() (selection/spread_order.h), and can prefer points; without such weights it is
+// worse, unless the number of points is a power of four.
 //   preferred_count  the distance of a point before this index counts twice
 std::vector<size_t> FarthestPointOrder(std::span<const Vec2> points, size_t count,
                                        size_t preferred_count = 0);

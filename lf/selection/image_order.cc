@@ -6,14 +6,16 @@
 #include <queue>
 #include <utility>
 
+#include "lf/core/check.h"
 #include "lf/core/random.h"
 #include "lf/core/value_named.h"
+#include "lf/selection/spread_order.h"
 
 namespace lf {
 namespace {
 
-constexpr uint64_t kShuffleStream = 1;
-constexpr const char* kNames[] = {"shuffle", "round-robin", "area"};
+constexpr uint64_t kShuffleStream = 1;  // streams of other random numbers: spread_sequence.cc
+constexpr const char* kNames[] = {"spread", "shuffle", "round-robin", "area"};
 
 std::vector<uint32_t> Shuffle(size_t image_count, uint64_t seed) {
   std::vector<std::pair<uint64_t, uint32_t>> keyed(image_count);
@@ -106,22 +108,33 @@ std::vector<uint32_t> RoundRobin(const std::vector<uint32_t>& shuffled,
 
 }  // namespace
 
+bool DependsOnFrames(ImageOrder order) {
+  return order == ImageOrder::kRoundRobin || order == ImageOrder::kArea;
+}
+
 const char* NameOf(ImageOrder order) { return kNames[static_cast<int>(order)]; }
 
 std::optional<ImageOrder> ImageOrderOf(const std::string& name) {
-  return ValueNamed(name, {ImageOrder::kShuffle, ImageOrder::kRoundRobin, ImageOrder::kArea});
+  return ValueNamed(name, {ImageOrder::kSpread, ImageOrder::kShuffle, ImageOrder::kRoundRobin,
+                           ImageOrder::kArea});
 }
 
 ImageRanks ShuffledRanks(size_t image_count, uint64_t seed) {
   return RanksOf(Shuffle(image_count, seed));
 }
 
+ImageRanks RanksOf(ImageOrder order, const LightField& light_field, uint64_t seed) {
+  LF_CHECK(!DependsOnFrames(order));
+  if (order == ImageOrder::kShuffle) return ShuffledRanks(light_field.size(), seed);
+  return RanksOf(SpreadOrder(light_field, seed));
+}
+
 ImageRanks RanksInOrder(ImageOrder order, size_t image_count, uint64_t seed,
                         std::span<const std::vector<ImageRays>> frames) {
   std::vector<uint32_t> shuffled = Shuffle(image_count, seed);
+  LF_CHECK(DependsOnFrames(order));
   if (order == ImageOrder::kArea) return RanksOf(ByArea(std::move(shuffled), frames));
-  if (order == ImageOrder::kRoundRobin) return RanksOf(RoundRobin(shuffled, frames));
-  return RanksOf(shuffled);
+  return RanksOf(RoundRobin(shuffled, frames));
 }
 
 }  // namespace lf

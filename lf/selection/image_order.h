@@ -15,9 +15,13 @@
 #include <vector>
 
 #include "lf/core/ids.h"
+#include "lf/light_field/model/light_field.h"
 
 namespace lf {
 
+//   kSpread      every beginning is spread evenly over the positions of the LF cameras
+//                (spread_order.h), which with a seed are all that it depends on: unfinished frames
+//                are nearest to finished ones
 //   kShuffle     random, depends only on a seed and not on the frames: the result is even among all
 //                frames, also before all LF images are processed
 //   kRoundRobin  all frames get rays equally fast: the next LF image is one that the frame with the
@@ -25,10 +29,13 @@ namespace lf {
 //   kArea        LF images with the most rays, summed over all frames, come first: gives many rays
 //                soon, but neighbouring LF images follow each other, so that the bokeh of
 //                unfinished frames is uneven
-enum class ImageOrder { kShuffle, kRoundRobin, kArea };
+enum class ImageOrder { kSpread, kShuffle, kRoundRobin, kArea };
 
-// Convert an order to "shuffle", "round-robin" or "area", and back. ImageOrderOf() returns nullopt
-// for any other text.
+// Returns true for kRoundRobin and kArea.
+bool DependsOnFrames(ImageOrder order);
+
+// Convert an order to "spread", "shuffle", "round-robin" or "area", and back. ImageOrderOf()
+// returns nullopt for any other text.
 const char* NameOf(ImageOrder order);
 std::optional<ImageOrder> ImageOrderOf(const std::string& name);
 
@@ -39,6 +46,8 @@ struct ImageRanks {
 };
 
 ImageRanks ShuffledRanks(size_t image_count, uint64_t seed);
+// Returns the ranks of all LF images in an order that does not depend on frames.
+ImageRanks RanksOf(ImageOrder order, const LightField& light_field, uint64_t seed);
 
 // An LF image that a frame takes, and the number of its rays for that frame.
 struct ImageRays {
@@ -46,10 +55,9 @@ struct ImageRays {
   uint64_t ray_count = 0;
 };
 
-// Returns the ranks of all LF images in an order. Unless the order is kShuffle, LF images that no
-// frame takes come last. LF images that the order does not distinguish are in the order of
-// kShuffle.
-//   frames  for each frame, the LF images that it takes, in any order; unused for kShuffle
+// Returns the ranks of all LF images in an order that depends on frames. LF images that no frame
+// takes come last. LF images that the order does not distinguish are in the order of kShuffle.
+//   frames  for each frame, the LF images that it takes, in any order
 ImageRanks RanksInOrder(ImageOrder order, size_t image_count, uint64_t seed,
                         std::span<const std::vector<ImageRays>> frames);
 

@@ -26,6 +26,15 @@ std::vector<std::vector<ImageRays>> Film() {
   return frames;
 }
 
+// Returns as many LF cameras in a row.
+LightField Row() {
+  LightField field;
+  field.cameras.resize(kImages);
+  for (size_t i = 0; i < kImages; ++i)
+    field.cameras[i].cam_from_world.translation.x() = static_cast<double>(i);
+  return field;
+}
+
 std::vector<uint32_t> Ids(const ImageRanks& ranks) {
   std::vector<uint32_t> ids(ranks.of_images.size(), UINT32_MAX);
   for (uint32_t id = 0; id < ranks.of_images.size(); ++id) ids[ranks.of_images[id]] = id;
@@ -34,8 +43,8 @@ std::vector<uint32_t> Ids(const ImageRanks& ranks) {
 
 // Counts the rays that each frame gets from the first tenth of the LF images that any frame takes.
 // Returns the standard deviation of these counts divided by their mean.
-double SpreadAfterATenth(ImageOrder order, const std::vector<std::vector<ImageRays>>& frames) {
-  const ImageRanks ranks = RanksInOrder(order, kImages, 3, frames);
+double SpreadAfterATenth(const ImageRanks& ranks,
+                         const std::vector<std::vector<ImageRays>>& frames) {
   std::vector<uint32_t> taken;
   for (const auto& frame : frames)
     for (const ImageRays& image : frame) taken.push_back(ranks.of_images[image.id.value]);
@@ -56,11 +65,12 @@ double SpreadAfterATenth(ImageOrder order, const std::vector<std::vector<ImageRa
 
 TEST(ImageOrder, EveryOrderHasEachImageOnce) {
   for (const ImageOrder order :
-       {ImageOrder::kShuffle, ImageOrder::kRoundRobin, ImageOrder::kArea}) {
-    const ImageRanks ranks = RanksInOrder(order, kImages, 3, Film());
+       {ImageOrder::kSpread, ImageOrder::kShuffle, ImageOrder::kRoundRobin, ImageOrder::kArea}) {
+    const ImageRanks ranks =
+        DependsOnFrames(order) ? RanksInOrder(order, kImages, 3, Film()) : RanksOf(order, Row(), 3);
     EXPECT_EQ(ranks.end, kImages);
     std::vector<uint32_t> ids = Ids(ranks);
-    if (order != ImageOrder::kShuffle) {
+    if (DependsOnFrames(order)) {
       // The LF images at the end are those that no frame takes.
       std::vector<uint32_t> last(ids.end() - 100, ids.end());
       for (const uint32_t id : last) EXPECT_TRUE(id < 100 || id >= 100 + 60 * 19 + 670) << id;
@@ -73,14 +83,14 @@ TEST(ImageOrder, EveryOrderHasEachImageOnce) {
 }
 
 TEST(ImageOrder, TheShuffleDependsOnTheSeedAlone) {
-  EXPECT_EQ(RanksInOrder(ImageOrder::kShuffle, kImages, 5, Film()).of_images,
-            ShuffledRanks(kImages, 5).of_images);
+  EXPECT_EQ(RanksOf(ImageOrder::kShuffle, Row(), 5).of_images, ShuffledRanks(kImages, 5).of_images);
   EXPECT_NE(ShuffledRanks(kImages, 6).of_images, ShuffledRanks(kImages, 5).of_images);
 }
 
 TEST(ImageOrder, RoundRobinFillsFramesEqually) {
-  const double shuffled = SpreadAfterATenth(ImageOrder::kShuffle, Film());
-  const double in_turn = SpreadAfterATenth(ImageOrder::kRoundRobin, Film());
+  const double shuffled = SpreadAfterATenth(ShuffledRanks(kImages, 3), Film());
+  const double in_turn =
+      SpreadAfterATenth(RanksInOrder(ImageOrder::kRoundRobin, kImages, 3, Film()), Film());
   EXPECT_GT(shuffled, 0.3);  // later frames have wider lenses, and get more rays
   EXPECT_LT(in_turn, 0.1);
 }

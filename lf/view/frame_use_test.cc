@@ -83,7 +83,8 @@ TEST(SceneText, HasALineForEverythingThatStandsSomewhere) {
     text += part;
     return {};
   };
-  ASSERT_TRUE(WriteSceneText(field, path, {FrameId{1}, FrameId{2}}, 0, Unweighted(), pool, emit));
+  ASSERT_TRUE(WriteSceneText(field, path, {FrameId{1}, FrameId{2}}, ShuffledRanks(field.size(), 0),
+                             Unweighted(), pool, emit));
   const auto count = [&](const std::string& word) {
     size_t lines = 0;
     for (size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1))

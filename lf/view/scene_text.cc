@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "lf/selection/image_index.h"
 
@@ -38,7 +39,7 @@ Vec3 Place(const PinholeCamera& camera) { return camera.CentreWorld() + Vec3::Ze
 }  // namespace
 
 Result<void> WriteSceneText(const LightField& light_field, const CameraPath& path,
-                            const std::vector<FrameId>& frames, uint64_t seed,
+                            const std::vector<FrameId>& frames, ImageRanks ranks,
                             const NeedsOptions& options, ThreadPool& pool,
                             const std::function<Result<void>(const std::string&)>& emit) {
   Lines lines(emit);
@@ -51,7 +52,7 @@ Result<void> WriteSceneText(const LightField& light_field, const CameraPath& pat
     LF_RETURN_IF_ERROR(
         lines.Add("render_camera {} {} {} {}\n", frame.value, centre.x(), centre.y(), centre.z()));
   }
-  const ImageIndex index(light_field, seed);
+  const ImageIndex index(light_field, std::move(ranks));
   for (const FrameId frame : frames) {
     std::vector<FrameNeeds::Image> used = NeedsOf(index, path.Camera(frame), options, pool).images;
     std::sort(used.begin(), used.end(),

@@ -12,6 +12,7 @@
 #include "lf/core/ids.h"
 #include "lf/core/result.h"
 #include "lf/light_field/model/light_field.h"
+#include "lf/selection/image_order.h"
 #include "lf/view/frame_use.h"
 
 namespace lf {
@@ -23,10 +24,10 @@ namespace lf {
 //   collected FRAME ID SHARE           every LF camera that the frame uses, by ascending ID, and
 //                                      the share of the LF image's pixels that are read
 //
-//   seed  seed of the shuffled order in which the frames take LF images
+//   ranks  of the LF images in the order in which the frames take them
 //   emit  receives the text in parts. If it returns an error, WriteSceneText() returns this error
 Result<void> WriteSceneText(const LightField& light_field, const CameraPath& path,
-                            const std::vector<FrameId>& frames, uint64_t seed,
+                            const std::vector<FrameId>& frames, ImageRanks ranks,
                             const NeedsOptions& options, ThreadPool& pool,
                             const std::function<Result<void>(const std::string&)>& emit);
 

@@ -48,14 +48,15 @@ class Renderer:
     lf_pixels : {"auto", "areas", "points"}
         What LF pixels show, for the filter "prefiltered": the mean light of their area, or the light of their centre.
         Default "auto": as the light field states, otherwise measured.
-    order : {"shuffle", "round-robin", "area"}
-        Order in which frames take LF images, which matters if they end early. Default "shuffle".
+    order : {"spread", "shuffle", "round-robin", "area"}
+        Order in which frames take LF images, which matters if they end early. Default "spread": spread evenly over the
+        lens, however many are taken.
     max_images : int, optional
         Largest number of LF images for each frame. Default None: all.
     max_angle_deg : float, optional
         Largest angle between the optical axes of LF camera and frame, up to 180. Default None: no limit.
     seed : int
-        Seed of the random numbers: of the order "shuffle", and of rebinned rays. Default 0.
+        Seed of the random numbers: of the orders "spread" and "shuffle", and of rebinned rays. Default 0.
     stop_when : str
         Rule by which a frame is finished early: "noise<=X" or "samples>=N", as `--stop-when` of `lfrenderer`. Default
         "": none.

@@ -32,7 +32,7 @@ PageScene::PageScene(LightField light_field, PageArguments arguments)
     : arguments_(std::move(arguments)),
       light_field_(std::move(light_field)),
       pool_(arguments_.threads),
-      index_(light_field_, arguments_.film.seed) {}
+      index_(light_field_, RanksOf(arguments_.film.order, light_field_, arguments_.film.seed)) {}
 
 Result<std::unique_ptr<PageScene>> PageScene::Open(LightField light_field,
                                                    PageArguments arguments) {

@@ -16,7 +16,7 @@ struct ForecastFacts {
   std::string output;       // folder of the packages; empty: nothing is written (--plan)
   std::string next;         // line that advises the next command; empty: none
   bool rebins = false;      // true for RenderMode::kRebin and kHybrid
-  ImageOrder order = ImageOrder::kShuffle;
+  ImageOrder order = ImageOrder::kSpread;
   uint64_t seed = 0;
   int thread_count = 1;
   double read_s = 0;  // seconds that it took to read the calibration

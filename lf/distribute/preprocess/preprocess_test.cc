@@ -71,7 +71,8 @@ class PreprocessTest : public ::testing::Test {
 
 void PreprocessTest::ExpectPackageIsAsGoodAsTheWhole(const Package& package,
                                                      const NeedsOptions& needs) {
-  const ImageIndex whole(field_, options_.film.seed), part(package.light_field, package.ranks);
+  const ImageIndex whole(field_, RanksOf(options_.film.order, field_, options_.film.seed)),
+      part(package.light_field, package.ranks);
   EXPECT_EQ(package.whole, IdentityOf(field_));
   for (size_t i = 0; i < package.images.size(); ++i)
     EXPECT_EQ(package.ranks.of_images[i], whole.RankOf(LfImageId{package.images[i].id}));
@@ -161,7 +162,7 @@ TEST_F(PreprocessTest, PackagesHaveWhatAShutterNeeds) {
       instant.aperture.radius_w += 0.0005 * k;
       film_.instants.push_back(instant);
     }
-  const ImageIndex whole(field_, options_.film.seed);
+  const ImageIndex whole(field_, RanksOf(options_.film.order, field_, options_.film.seed));
   for (const LensWeights weights : {LensWeights::kAuto, LensWeights::kNone})
     for (const std::optional<size_t> most : {std::optional<size_t>(), std::optional<size_t>(9)}) {
       options_.film.lens_weights = weights;
@@ -211,7 +212,7 @@ TEST_F(PreprocessTest, PackagesHaveWhatAShutterNeeds) {
 // have the lens weights of the whole light field with and without virtual LF images.
 TEST_F(PreprocessTest, PackagesHaveWhatTheGuardNeeds) {
   for (uint32_t i = 0; i < field_.size(); ++i) field_.cameras[i].is_virtual = i % 3 != 0;
-  const ImageIndex whole(field_, options_.film.seed);
+  const ImageIndex whole(field_, RanksOf(options_.film.order, field_, options_.film.seed));
   std::map<bool, uint64_t> rays;
   for (const LensWeights weights : {LensWeights::kAuto, LensWeights::kNone})
     for (const bool guard : {true, false}) {

@@ -7,6 +7,11 @@
 // standard error of its noisiest channel. The unit is linear radiance before white balance and
 // colour matrix; 1 is the light field's white (1.0 in an EXR frame). Linear radiance is used,
 // because noise in it falls as 1 / sqrt(n) with the number n of LF images, whatever the brightness.
+//
+// It is the error of LF images that are drawn at random. With ImageOrder::kSpread it is a bound:
+// the frame is nearer to the frame of all LF images, usually by a factor of about two
+// (doc/checkpoints.md, "Measured noise"). The bound is not calibrated, because the factor depends
+// on the picture.
 #pragma once
 
 #include <cstdint>

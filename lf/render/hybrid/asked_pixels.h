@@ -19,7 +19,7 @@ namespace lf {
 
 // For the previews of a frame, rebinned rays are kept only from the LF images up to the
 // kPreviewImages-th one that the frame collects, in the order in which LF images are taken. With
-// ImageOrder::kShuffle, these LF images are spread over the whole lens (thesis 4.2.1).
+// ImageOrder::kSpread, these LF images are spread over the whole lens (thesis 4.2.1).
 inline constexpr size_t kPreviewImages = 64;
 
 // Returns the first rank of the phase that contains `rank`. A rank is a position in the order of

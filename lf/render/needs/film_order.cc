@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lf/render/needs/film_order.h"
 
-#include <utility>
-
 namespace lf {
 
 Result<ImageRanks> RanksOfFilm(ImageOrder order, uint64_t seed, const LightField& light_field,
                                const CameraPath& path, const NeedsOptions& needs,
                                ThreadPool& pool) {
-  ImageRanks shuffled = ShuffledRanks(light_field.size(), seed);
-  if (order == ImageOrder::kShuffle) return shuffled;
-  const ImageIndex index(light_field, std::move(shuffled));
+  if (!DependsOnFrames(order)) return RanksOf(order, light_field, seed);
+  const ImageIndex index(light_field, seed);
   NeedsOptions unlimited = needs;
   unlimited.max_image_count.reset();
   // The order must not depend on the filter, because packages can be rendered with any filter.

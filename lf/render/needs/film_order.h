@@ -17,9 +17,10 @@ namespace lf {
 
 // Returns the rank of every LF image in the order. The order is computed for all frames of the
 // film, even if only some are rendered, so that a rank means the same for any choice of frames.
-// Unless `order` is kShuffle, LF images that no frame reads (FrameNeeds::images) come last.
+// If DependsOnFrames(order) is true, LF images that no frame reads (FrameNeeds::images) come last.
 //   needs  options with which the film will be rendered; max_image_count is ignored
-// kInterrupted: *needs.select.interrupted became true; never if `order` is kShuffle.
+// kInterrupted: *needs.select.interrupted became true; never if DependsOnFrames(order) is
+// false.
 Result<ImageRanks> RanksOfFilm(ImageOrder order, uint64_t seed, const LightField& light_field,
                                const CameraPath& path, const NeedsOptions& needs, ThreadPool& pool);
 

@@ -34,11 +34,12 @@ std::span<const double> Package::InstantDistances(FrameId frame) const {
   return distances_w.front() < 0 ? std::span<const double>() : distances_w;
 }
 
-Package PackageOfAll(LightField light_field, CameraPath path, uint64_t seed) {
+Package PackageOfAll(LightField light_field, CameraPath path, uint64_t seed, ImageOrder order) {
   Package package;
   package.whole = IdentityOf(light_field);
   package.whole_virtual_count = light_field.size() - RecordedCount(light_field);
-  package.ranks = ShuffledRanks(light_field.size(), seed);
+  package.ranks = RanksOf(order, light_field, seed);
+  package.choices.order = order;
   package.choices.seed = seed;
   for (uint32_t n = 1; n <= path.frame_count(); ++n) package.frames.push_back({.id = FrameId{n}});
   package.light_field = std::move(light_field);

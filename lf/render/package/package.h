@@ -43,7 +43,7 @@ struct FrameSurroundings {
 
 // Options of the selection, which a render of the package cannot change.
 struct PackageChoices {
-  ImageOrder order = ImageOrder::kShuffle;
+  ImageOrder order = ImageOrder::kSpread;
   uint64_t seed = 0;
   // Largest number of LF images for each frame, above 0: the first ones in the order are kept.
   // Unset: no limit.
@@ -114,8 +114,9 @@ struct Package {
   std::span<const double> InstantDistances(FrameId frame) const;
 };
 
-// Returns a whole light field and path as one package, with the LF images in an order shuffled by
-// `seed`.
-Package PackageOfAll(LightField light_field, CameraPath path, uint64_t seed);
+// Returns a whole light field and path as one package, with the LF images in an order for which
+// DependsOnFrames(order) is false.
+Package PackageOfAll(LightField light_field, CameraPath path, uint64_t seed,
+                     ImageOrder order = ImageOrder::kSpread);
 
 }  // namespace lf

@@ -41,10 +41,13 @@ Result<void> CheckRenderOptions(const Package& package, const RenderOptions& opt
 Result<Package> PackageOfFilm(LightField light_field, CameraPath path, const RenderOptions& options,
                               ThreadPool& pool) {
   const FilmSettings& film = options.film;
-  Package package = PackageOfAll(std::move(light_field), std::move(path), film.seed);
+  const bool depends_on_frames = DependsOnFrames(film.order);
+  Package package = PackageOfAll(std::move(light_field), std::move(path), film.seed,
+                                 depends_on_frames ? ImageOrder::kShuffle : film.order);
   package.choices.order = film.order;
   package.choices.max_angle_rad = film.max_angle_rad;
   LF_RETURN_IF_ERROR(CheckRenderOptions(package, options));
+  if (!depends_on_frames) return package;
   WorkSettings work = options.work;
   if (options.signals != nullptr) work.stop = &options.signals->stop;
   const NeedsOptions needs = NeedsOfFilm(package, Resolved(film, package), work);

@@ -127,7 +127,7 @@ void AddQualityRows(std::vector<Setting>& rows) {
        .placeholder = "N",
        .text = "Maximum number of LF images per frame (all)\n"
                "A frame uses the first N of the LF images that contribute to it, in the order of "
-               "{order}, which is random by default."},
+               "{order}."},
       LF_MEMBER(max_image_count)));
   rows.push_back(ZeroIfUnset(
       {.key = "max_angle_deg",
@@ -143,14 +143,18 @@ void AddQualityRows(std::vector<Setting>& rows) {
        .is_in_packages = true,
        .text = "Order in which frames take LF images\n"
                "The order matters if {max_images} or {stop_when} end a frame early.\n"
+               "spread: LF images whose positions are spread evenly over the lens, however many "
+               "are taken; by {seed}\n"
                "shuffle: random, by {seed}\n"
                "round-robin: always an LF image for the frame with the fewest rays\n"
                "area: LF images with the most rays first"},
-      LF_MEMBER(order), Named({ImageOrder::kShuffle, ImageOrder::kRoundRobin, ImageOrder::kArea})));
+      LF_MEMBER(order),
+      Named({ImageOrder::kSpread, ImageOrder::kShuffle, ImageOrder::kRoundRobin,
+             ImageOrder::kArea})));
   rows.push_back(Plain({.key = "seed",
                         .is_in_packages = true,
                         .placeholder = "N",
-                        .text = "Seed of {order shuffle} and of {kept edges}"},
+                        .text = "Seed of {order spread}, {order shuffle} and {kept edges}"},
                        LF_MEMBER(seed)));
   rows.push_back(Rule(
       {.key = "stop_when",
@@ -159,7 +163,8 @@ void AddQualityRows(std::vector<Setting>& rows) {
            "Finish a frame early: noise<=X or samples>=N\n"
            "noise<=X: the frame is finished when at least 90 % of the elements that LF images see "
            "have a noise of at most X. The noise of an element is the standard error of its mean, "
-           "in linear light where white is 1; 0.002 is half an 8-bit level in a mid-grey. Works "
+           "in linear light where white is 1; 0.002 is half an 8-bit level in a mid-grey. With "
+           "{order spread} it is a bound, and frames are nearer to those of all LF images. Works "
            "with every {mode} and all {lens_weights}. With {mode rebin} it needs 24 bytes of "
            "memory for each element of every frame.\n"
            "samples>=N: the frame is finished when at least 99 % of the elements that LF images "

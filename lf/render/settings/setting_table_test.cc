@@ -70,7 +70,7 @@ TEST(SettingTable, RecordsSettingsThatMatterByRole) {
   FilmSettings film;
   EXPECT_EQ(texts(film, SettingRole::kRays),
             "mode collect\nestimator bilinear\nfilter auto\nlf_pixels auto\nlens_weights auto\n"
-            "guard on\norder shuffle\nseed 0\nback_end fast\n");
+            "guard on\norder spread\nseed 0\nback_end fast\n");
   EXPECT_EQ(texts(film, SettingRole::kPicture), "fill 2\nsmooth_below 0\n");
   EXPECT_EQ(texts(film, SettingRole::kMeasuring), "");
   film.reading.estimator = Estimator::kNearest;
@@ -78,7 +78,7 @@ TEST(SettingTable, RecordsSettingsThatMatterByRole) {
   film.max_image_count = 7;
   film.require.noise = 0.5;
   EXPECT_EQ(texts(film, SettingRole::kRays),
-            "mode collect\nestimator nearest\nlens_weights auto\nmax_images 7\norder shuffle\n"
+            "mode collect\nestimator nearest\nlens_weights auto\nmax_images 7\norder spread\n"
             "seed 0\nback_end fast\n");
   EXPECT_EQ(texts(film, SettingRole::kMeasuring), "require noise<=0.5\n");
   film.mode = RenderMode::kRebin;
