@@ -5,9 +5,12 @@
 #include <array>
 #include <cstddef>
 #include <numeric>
+#include <string_view>
 #include <tuple>
+#include <utility>
 
 #include "lf/core/geometry.h"
+#include "lf/core/hash.h"
 #include "lf/selection/spread_sequence.h"
 
 namespace lf {
@@ -148,15 +151,29 @@ class Assignment {
   std::vector<Target> others_;  // targets behind a cut
 };
 
-// Returns, for each LF image, the brightest one of its bracket; itself if it has no brighter one.
-std::vector<uint32_t> BrightestOf(const LightField& light_field) {
-  std::vector<uint32_t> brightest(light_field.size());
-  for (uint32_t i = 0; i < brightest.size(); ++i) {
-    brightest[i] = i;
-    while (light_field.cameras[brightest[i]].brighter != LfCamera::kNone)
-      brightest[i] = light_field.cameras[brightest[i]].brighter;
+// Returns a hash of the pose, and of whether the LF image is virtual.
+uint64_t HashOfPose(const LfCamera& camera) {
+  const RigidTransform& pose = camera.cam_from_world;
+  const auto bytes_of = [](const auto& matrix) {
+    return std::string_view(reinterpret_cast<const char*>(matrix.data()),
+                            sizeof(double) * static_cast<size_t>(matrix.size()));
+  };
+  return HashBytes(bytes_of(pose.translation),
+                   HashBytes(bytes_of(pose.rotation), camera.is_virtual ? 1 : 0));
+}
+
+// Returns, for each LF image, the first one of exactly its pose. Brackets are not told by
+// LfCamera::brighter, because a packed store does not know them, and must have the same order.
+std::vector<uint32_t> FirstOfEqualPose(const LightField& light_field) {
+  std::vector<std::pair<uint64_t, uint32_t>> hashes(light_field.size());
+  for (uint32_t i = 0; i < hashes.size(); ++i) hashes[i] = {HashOfPose(light_field.cameras[i]), i};
+  std::sort(hashes.begin(), hashes.end());
+  std::vector<uint32_t> firsts(hashes.size());
+  for (size_t k = 0; k < hashes.size(); ++k) {
+    const bool is_again = k > 0 && hashes[k].first == hashes[k - 1].first;
+    firsts[hashes[k].second] = is_again ? firsts[hashes[k - 1].second] : hashes[k].second;
   }
-  return brightest;
+  return firsts;
 }
 
 // Returns the LF images `ids` in the order of their positions.
@@ -192,10 +209,10 @@ std::vector<uint32_t> OrderOfPoints(std::span<const SurfacePoint> points, uint64
 }
 
 std::vector<uint32_t> SpreadOrder(const LightField& light_field, uint64_t seed) {
-  const std::vector<uint32_t> brightest = BrightestOf(light_field);
+  const std::vector<uint32_t> firsts = FirstOfEqualPose(light_field);
   std::vector<uint32_t> recorded, of_virtual;
   for (uint32_t i = 0; i < light_field.size(); ++i)
-    if (brightest[i] == i) (light_field.cameras[i].is_virtual ? of_virtual : recorded).push_back(i);
+    if (firsts[i] == i) (light_field.cameras[i].is_virtual ? of_virtual : recorded).push_back(i);
   const std::vector<uint32_t> order =
       Merged(Ordered(light_field, recorded, seed, 0), Ordered(light_field, of_virtual, seed, 1));
   if (order.size() == light_field.size()) return order;
@@ -203,7 +220,7 @@ std::vector<uint32_t> SpreadOrder(const LightField& light_field, uint64_t seed) 
   for (uint32_t rank = 0; rank < order.size(); ++rank) ranks[order[rank]] = rank;
   std::iota(ids.begin(), ids.end(), 0U);
   std::sort(ids.begin(), ids.end(), [&](uint32_t a, uint32_t b) {
-    return std::pair(ranks[brightest[a]], a) < std::pair(ranks[brightest[b]], b);
+    return std::pair(ranks[firsts[a]], a) < std::pair(ranks[firsts[b]], b);
   });
   return ids;
 }

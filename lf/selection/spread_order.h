@@ -29,10 +29,10 @@ std::vector<uint32_t> OrderOfPoints(std::span<const SurfacePoint> points, uint64
 // Returns the LF images of a light field, as LfImageId::value, in such an order, which depends on
 // positions and the seed alone.
 //
-// LF images of one bracket (light_field/model/brackets.h) follow each other, because only together
-// they send all rays of a pose. Recorded and virtual LF images are ordered by themselves and then
-// merged, so that a beginning has the same share of both. The order of recorded LF images is
-// therefore the same with and without virtual ones.
+// LF images of exactly one pose follow each other, because those of a bracket
+// (light_field/model/brackets.h) send all rays of the pose only together. Recorded and virtual LF
+// images are ordered by themselves and then merged, so that a beginning has the same share of both.
+// The order of recorded LF images is therefore the same with and without virtual ones.
 std::vector<uint32_t> SpreadOrder(const LightField& light_field, uint64_t seed);
 
 }  // namespace lf

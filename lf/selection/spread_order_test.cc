@@ -256,6 +256,12 @@ TEST(SpreadOrder, BracketsStayTogether) {
   const std::vector<uint32_t> order = SpreadOrder(field, 5);
   for (uint32_t rank = 0; rank < order.size(); ++rank)
     EXPECT_EQ(order[rank], 3 * poses[rank / 3] + rank % 3);
+  // A packed store has the poses, but does not know which LF images are brackets.
+  for (LfCamera& camera : field.cameras) {
+    camera.brighter = LfCamera::kNone;
+    camera.masks_clipped = false;
+  }
+  EXPECT_EQ(SpreadOrder(field, 5), order);
 }
 
 TEST(SpreadOrder, VirtualLfImagesComeBetweenRecordedOnes) {

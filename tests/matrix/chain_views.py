@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Chains of light fields whose views lie in one file, or in files that have to be put in order: lfimport writes their
-calibration, and every program reads it."""
+"""Chains of light fields whose views lie in one file, in files that have to be put in order, or in a light field video:
+lfimport writes their calibration, and every program reads it."""
 import functools
 import json
+import shutil
 
 from chain_world import FOCAL_PX, HEIGHT, SIDE, WIDTH, World, light_at, srgb_of
 from matrix_world import once
@@ -48,6 +49,18 @@ class ViewChains(World):
                 "frames": frames}
         (folder / "transforms.json").write_text(json.dumps(text))
         return folder
+
+    @once
+    def imported_time(self, flaws):
+        """The LF images are those of one time of a light field video, whose other times are black."""
+        still, folder = self.field_of_views("grid"), self.new_folder("filmed")
+        shutil.copytree(still, folder)
+        text = json.loads((still / "transforms.json").read_text())
+        black = self.write_png(folder / "black.png", np.zeros((HEIGHT, WIDTH, 3), np.uint16)).name
+        text["frames"] = [frame | {"time": time} | ({} if time == 1 else {"file_path": black})
+                          for time in (0, 1, 2) for frame in text["frames"]]
+        (folder / "transforms.json").write_text(json.dumps(text))
+        return self.make("lfimport", folder, "--time", 1, to=self.new_folder("native"))
 
     def imported(self, given, *options):
         return self.make("lfimport", given, *options, "--pitch", PITCH, "--focal-px", FOCAL_PX,

@@ -47,6 +47,7 @@ VIEW_WRITERS = {
     "lfimport --grid --layout lenslets": "imported_lenslets",
     "lfimport .npy": "imported_array",
     "lfimport .h5": "imported_hdf5",
+    "lfimport --time": "imported_time",
 }
 LIGHT_READERS = {
     "lfrenderer": "see_film",

@@ -92,7 +92,8 @@ class MatrixTest(unittest.TestCase):
         cells = list(map(Cell._make, covering_cells(list(VALUES.values()))))
         wrong, kinds = [], {"same": 0, "refused": 0, "wrong": 0}
         with tempfile.TemporaryDirectory() as folder:
-            for outcome in try_cells(Matrix(BIN, folder), page, cells):
+            matrix = Matrix(BIN, folder)
+            for outcome in try_cells(matrix, page, cells):
                 kinds[outcome.kind] += 1
                 if outcome.kind == "wrong":
                     wrong.append(f"{outcome.cell.name}: {outcome.detail}")
@@ -103,6 +104,7 @@ class MatrixTest(unittest.TestCase):
               file=sys.stderr)
         self.assertEqual(len(wrong), 0, "wrong cells are listed above")
         self.assertGreater(kinds["same"], len(cells) / 2)
+        self.assertGreater(matrix.early_count, 0)
 
 
 if __name__ == "__main__":
