@@ -252,6 +252,7 @@ class CodecWords:
     profile: str
     quantizer: str
     levels: int
+    reencode: bool
     threshold: float
     target_psnr: float
     def __init__(self) -> None: ...
