@@ -10,6 +10,7 @@
 
 #include "lf/core/hash.h"
 #include "lf/storage/packed/packed_format.h"
+#include "lf/storage/packed/part_set.h"
 #include "lf/storage/packed/plane_table.h"
 #include "lf/storage/tables/stored_numbers.h"
 
@@ -51,6 +52,7 @@ constexpr SettingWords kSettingWords[] = {
     {"images.whole_ids", "another part of the light field's LF images", false},
     {"images.rects", "other parts of the LF images' pixels", false},
     {"shard_bytes", "a {shard_size}, in bytes, of", true},
+    {kPartsKey, "a number of files for resolutions ({by_resolution}) of", true},
     {kDensifiedKey, "settings of the densifier of", true},
     {"response", "another response curve", false}};
 
@@ -70,17 +72,19 @@ std::string TextOfDifference(std::string key, const std::string& begun, const st
 
 SettingList SettingsOfPlan(const LightField& light_field, const PackedStorePlan& plan) {
   const LightFieldIdentity images = IdentityInStore(light_field);
-  SettingList settings = {{"light_field.images", fmt::format("{}", plan.whole.image_count)},
-                          {"light_field.names", plan.whole.names},
-                          {"light_field.calibration", plan.whole.calibration},
-                          {"images", fmt::format("{}", images.image_count)},
-                          {"images.names", images.names},
-                          {"images.calibration", images.calibration},
-                          {"images.whole_ids", HashOfIds(plan.whole_ids)},
-                          {"images.rects", HashOfRects(plan.rects)},
-                          {"codec", plan.codec},
-                          {"display_levels", TextOf(plan.display_levels)},
-                          {"shard_bytes", fmt::format("{}", plan.shard_bytes)}};
+  SettingList settings = {
+      {"light_field.images", fmt::format("{}", plan.whole.image_count)},
+      {"light_field.names", plan.whole.names},
+      {"light_field.calibration", plan.whole.calibration},
+      {"images", fmt::format("{}", images.image_count)},
+      {"images.names", images.names},
+      {"images.calibration", images.calibration},
+      {"images.whole_ids", HashOfIds(plan.whole_ids)},
+      {"images.rects", HashOfRects(plan.rects)},
+      {"codec", plan.codec},
+      {"display_levels", TextOf(plan.display_levels)},
+      {"shard_bytes", fmt::format("{}", plan.shard_bytes)},
+      {kPartsKey, plan.part_count > 0 ? fmt::format("{}", plan.part_count) : ""}};
   if (plan.densified) {
     const SettingList densified = SettingsOf(*plan.densified);
     settings.insert(settings.begin(), densified.begin(), densified.end());
