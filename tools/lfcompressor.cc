@@ -40,6 +40,7 @@ constexpr lf::HelpTexts kHelp = {
     .examples = R"(  lfcompressor capture/ -o capture.lfs                        # about 45 dB
   lfcompressor capture/ -o capture.lfs --profile lossless     # lossless
   lfcompressor capture/ -o capture.lfs --target-psnr 42 --verify
+  lfcompressor capture/ -o capture.lfs --by-resolution        # for a web server
   lfcompressor packages/package-*.lfp -o film.lfs             # only the part that a film needs
   lfrenderer capture.lfs path.yaml -o frames                  # a store is a LIGHTFIELD
   lfrenderer packages/package-0000.lfp --lightfield film.lfs -o frames)",
@@ -63,6 +64,7 @@ struct Arguments {
   lf::LightFieldArgument light_field;
   lf::CodecWords codec;
   std::string output, shard_size;
+  bool by_resolution = false;
   bool needed_pixels = false, resume = false, overwrite = false, verify = false;
   lf::AllowMissing allow_missing;
 };
@@ -100,6 +102,14 @@ void AddOutput(CLI::App& app, Arguments& a) {
            "The encoded images are written into files beside STORE.lfs, each of about SIZE, such "
            "as 4G. STORE.lfs itself is then small, and needs these files beside it.")
       ->check(lf::NotEmpty());
+  output.AddFlag(
+      "--by-resolution", a.by_resolution,
+      "Split the store by resolution, for copies over a network\n"
+      "The encoded images are written into files beside STORE.lfs. STORE-r0.lfs has the smallest "
+      "pictures of all LF images, and each further file, up to STORE-r3.lfs, doubles their "
+      "resolution. Without the last files the store is a coarser light field, and if a file is "
+      "incomplete, some LF images are missing. Image files are encoded also if they are smaller, "
+      "unless the profile is recorded.");
 }
 
 void AddQuality(CLI::App& app, Arguments& a) {
@@ -171,7 +181,18 @@ lf::Result<lf::CompressOptions> MakeOptions(const Arguments& a, const lf::Common
   if (options.store.extension() != lf::kStoreExtension)
     return lf::UsageError(
         fmt::format("-o {}: expected a file name that ends in {}", a.output, lf::kStoreExtension));
-  LF_RETURN_IF_ERROR(lf::SetCodec(a.codec, &options));
+  if (a.by_resolution && !a.shard_size.empty())
+    return lf::UsageError(
+        "--by-resolution and --shard-size exclude each other, because each says into which files "
+        "the store is split: leave one of them out");
+  if (a.by_resolution && a.needed_pixels)
+    return lf::UsageError(
+        "--by-resolution and --needed-pixels exclude each other, because smaller pictures are made "
+        "of whole LF images: leave one of them out");
+  options.by_resolution = a.by_resolution;
+  lf::CodecWords codec = a.codec;
+  if (a.by_resolution && codec.profile != "recorded") codec.reencode = true;
+  LF_RETURN_IF_ERROR(lf::SetCodec(codec, &options));
   if (!a.shard_size.empty()) {
     LF_ASSIGN_OR_RETURN(options.shard_bytes, lf::ParseByteSize(a.shard_size, "--shard-size"));
   }

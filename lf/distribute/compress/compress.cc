@@ -9,10 +9,12 @@
 #include <mutex>
 #include <utility>
 
+#include "lf/core/check.h"
 #include "lf/core/log.h"
 #include "lf/distribute/compress/find_threshold.h"
 #include "lf/distribute/compress/image_coder.h"
 #include "lf/distribute/compress/verify_store.h"
+#include "lf/selection/spread_order.h"
 #include "lf/storage/load/recorded_image.h"
 #include "lf/storage/packed/packed_store_file.h"
 #include "lf/storage/packed/packed_store_writer.h"
@@ -25,6 +27,15 @@ double Now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+// Returns the number of files of a store by resolution: one for each resolution that LF images can
+// be loaded with, up to an eighth of their size.
+size_t PartCount(const CompressOptions& options, const CodecSettings& settings) {
+  constexpr int kMostHalvings = 3;
+  if (!options.by_resolution) return 0;
+  if (settings.profile == CodecProfile::kThesis || options.files == KeepFiles::kAll) return 1;
+  return 1 + static_cast<size_t>(std::min(settings.levels, kMostHalvings));
+}
+
 PackedStorePlan PlanOf(const CompressSource& source, const CompressOptions& options,
                        const CodecSettings& settings) {
   PackedStorePlan plan;
@@ -33,6 +44,7 @@ PackedStorePlan PlanOf(const CompressSource& source, const CompressOptions& opti
   plan.codec = NameOf(settings, options.files);
   plan.display_levels = ImageCoder(source.light_field.encoding, settings).display_levels();
   plan.shard_bytes = options.shard_bytes;
+  plan.part_count = PartCount(options, settings);
   plan.source = options.source_name;
   plan.version = options.version;
   return plan;
@@ -76,6 +88,7 @@ class Compressor {
   Result<void> FindSkipped();
   Result<void> ChooseThreshold();
   Result<void> Write(FileLock lock);
+  std::vector<LfImageId> Ordered() const;
   Result<void> CheckFiles(const PackedStoreWriter& writer);
   void Count(const RecordedImage& image, const CodedImage& coded, const CodeError& lost,
              const std::string& name);
@@ -171,6 +184,15 @@ void Compressor::Count(const RecordedImage& image, const CodedImage& coded, cons
   now_.code_bytes = report_.code_bytes;
 }
 
+// Returns the LF images to compress in the order in which they are added to the store.
+std::vector<LfImageId> Compressor::Ordered() const {
+  if (!options_.by_resolution) return ids_;
+  std::vector<LfImageId> ordered;
+  for (const uint32_t id : SpreadOrder(source_.light_field, /*seed=*/0))
+    if (!source_.rects[id].empty()) ordered.push_back({id});
+  return ordered;
+}
+
 // Checks that the file of each LF image in the unfinished store still has the size that it had when
 // it was encoded, because it may have been replaced. Files that no longer exist are not checked.
 Result<void> Compressor::CheckFiles(const PackedStoreWriter& writer) {
@@ -198,7 +220,7 @@ Result<void> Compressor::Write(FileLock lock) {
       OpenWriter(source_, options_, PlanOf(source_, options_, settings_), std::move(lock)));
   LF_RETURN_IF_ERROR(CheckFiles(writer));
   std::vector<LfImageId> ids;
-  for (const LfImageId id : ids_)
+  for (const LfImageId id : Ordered())
     if (!writer.Has(id)) ids.push_back(id);
   report_.resumed_count = ids_.size() - ids.size();
   now_.total = ids_.size();
@@ -295,6 +317,7 @@ Result<CompressReport> Compressor::Run() {
   const double begin_s = Now();
   settings_ = options_.codec;
   LF_RETURN_IF_ERROR(CheckSettings(settings_));
+  LF_CHECK(!options_.by_resolution || options_.shard_bytes == 0);
   report_.image_count = ids_.size();
   report_.left_out_count = source_.light_field.size() - ids_.size();
   LF_RETURN_IF_ERROR(CheckTarget());

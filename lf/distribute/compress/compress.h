@@ -29,6 +29,10 @@ struct CompressOptions {
   // least this PSNR.
   std::optional<double> target_psnr_db;
   uint64_t shard_bytes = 0;  // approximate size of each file of encoded images; 0: one file
+  // True: makes a store by resolution (packed_store_writer.h), in whose files LF images are in
+  // spread order (selection/spread_order.h). Not together with shard_bytes. All pixels of LF images
+  // must be compressed, because parts of them are not reduced.
+  bool by_resolution = false;
   // True: resumes an unfinished store, or begins a new one if there is none. If the store is
   // complete, it must match the options, and is kept.
   bool resume = false;
