@@ -71,7 +71,8 @@ class ResolutionStoresTest(ProgramTestCase):
         self.assertEqual(report["store_bytes"], sum(file.stat().st_size for file in self.folder.glob("a*.lfs")))
         head = self.part(2).read_bytes()[:64].decode()
         self.assertRegex(head, r"^lfrendertools part 2 of the packed store [0-9a-f]{16} +\n$")
-        self.assertEqual(self.frames("of_folder", self.field, self.path), self.frames("of_store", self.store, self.path))
+        self.assertEqual(self.frames("of_folder", self.field, self.path),
+                         self.frames("of_store", self.store, self.path))
         self.succeeds(COMPRESSOR, self.field, "-o", self.store, "--profile", "lossless", "--by-resolution", "--resume",
                       "--verify")
         self.fails(3, ["a number of files for resolutions (--by-resolution) of 4"], COMPRESSOR, self.field, "-o",
@@ -141,7 +142,8 @@ class ResolutionStoresTest(ProgramTestCase):
     def test_files_that_cannot_be_reduced_are_in_the_first_file(self):
         self.compress("--profile", "recorded", "--verify")
         self.assertEqual(sorted(file.name for file in self.folder.glob("a*.lfs")), ["a-r0.lfs", "a.lfs"])
-        self.assertEqual(self.frames("of_folder", self.field, self.path), self.frames("of_store", self.store, self.path))
+        self.assertEqual(self.frames("of_folder", self.field, self.path),
+                         self.frames("of_store", self.store, self.path))
 
     def test_a_store_of_packages_may_be_by_resolution(self):
         packages = self.folder / "packages"
@@ -169,8 +171,8 @@ class ResolutionStoresTest(ProgramTestCase):
 
     def test_killed_writers_resume(self):
         self.compress("--profile", "lossless", store=self.folder / "b.lfs")
-        words = [COMPRESSOR, str(self.field), "-o", str(self.store), "--by-resolution", "--profile", "lossless", "--threads", "1",
-                 "--progress", "none"]
+        words = [COMPRESSOR, str(self.field), "-o", str(self.store), "--by-resolution", "--profile", "lossless",
+                 "--threads", "1", "--progress", "none"]
         for delay_s in (0.02, 0.05, 0.1):
             process = subprocess.Popen([*words, "--resume"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             time.sleep(delay_s)
