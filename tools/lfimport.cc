@@ -400,6 +400,9 @@ lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
   report.shown_times = light_field.slice_times;
   if (!a.output.empty()) LF_RETURN_IF_ERROR(lf::CheckNames(a.output, light_field));
   lf::ThreadPool pool(common.threads);
+  if (lf::HoldsPackedStore(light_field)) {
+    LF_ASSIGN_OR_RETURN(report.films, lf::ReadStoreFilms(light_field.folder));
+  }
   if (a.check != "none") {
     LF_ASSIGN_OR_RETURN(report.faults, CheckFiles(a, common, light_field, interrupted, pool));
     if (excludes_missing) {

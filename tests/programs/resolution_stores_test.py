@@ -136,8 +136,8 @@ class ResolutionStoresTest(ProgramTestCase):
         shutil.copy(other.with_name("a-r1.lfs"), self.part(1))
         self.fails(3, ["a-r1.lfs: is not part 1 of the packed store", "copy all files of one store together"], RENDERER,
                    self.store, self.path, "-o", self.folder / "none")
-        self.fails(3, ["a-r2.lfs: is a part of a packed store: give the store's file"], RENDERER, self.part(2), self.path,
-                   "-o", self.folder / "none")
+        self.fails(3, ["a-r2.lfs: is a part of a packed store: give the store's file"], RENDERER, self.part(2),
+                   self.path, "-o", self.folder / "none")
 
     def test_files_that_cannot_be_reduced_are_in_the_first_file(self):
         self.compress("--profile", "recorded", "--verify")

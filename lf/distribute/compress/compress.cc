@@ -37,11 +37,12 @@ size_t PartCount(const CompressOptions& options, const CodecSettings& settings) 
 }
 
 PackedStorePlan PlanOf(const CompressSource& source, const CompressOptions& options,
-                       const CodecSettings& settings) {
+                       const CodecSettings& settings, const ThresholdFactors& factors) {
   PackedStorePlan plan;
   plan.whole = source.whole;
   plan.rects = source.rects;
-  plan.codec = NameOf(settings, options.files);
+  plan.codec = NameOf(settings, options.files, factors);
+  if (options.use != nullptr) plan.films = options.use->films;
   plan.display_levels = ImageCoder(source.light_field.encoding, settings).display_levels();
   plan.shard_bytes = options.shard_bytes;
   plan.part_count = PartCount(options, settings);
@@ -79,7 +80,12 @@ class Compressor {
         options_(options),
         pool_(pool),
         progress_(progress),
-        ids_(source.CompressedIds()) {}
+        ids_(source.CompressedIds()) {
+    if (options.use != nullptr) {
+      factors_ = ThresholdFactors(*options.use, source.rects);
+      errors_.resize(source.rects.size());
+    }
+  }
 
   Result<CompressReport> Run();
 
@@ -90,8 +96,8 @@ class Compressor {
   Result<void> Write(FileLock lock);
   std::vector<LfImageId> Ordered() const;
   Result<void> CheckFiles(const PackedStoreWriter& writer);
-  void Count(const RecordedImage& image, const CodedImage& coded, const CodeError& lost,
-             const std::string& name);
+  void Count(LfImageId id, const RecordedImage& image, const CodedImage& coded,
+             const CodeError& lost);
   void AddOne(PackedStoreWriter* writer, LfImageId id);
   VerifyOptions Verification() const;
   Result<void> Verify();
@@ -104,11 +110,13 @@ class Compressor {
   const std::function<void(const CompressProgress&)>& progress_;
   const std::vector<LfImageId> ids_;  // LF images that are compressed
   CodecSettings settings_;
+  ThresholdFactors factors_;
   std::optional<ImageCoder> coder_;
 
   std::mutex mutex_;  // guards all members below
   CompressReport report_;
   CompressProgress now_;
+  std::vector<double> errors_;  // [id]: mean squared error, 0 until encoded; empty without `use`
   std::optional<Error> error_;
   bool ended_ = false;  // true after an error or an interruption
 };
@@ -136,7 +144,9 @@ void Compressor::AddOne(PackedStoreWriter* writer, LfImageId id) {
   if (!image) {
     error = image.error();
   } else {
-    if (Result<CodedImage> made = coder_->CodeOrFile(light_field, id, *image); made) {
+    if (Result<CodedImage> made =
+            coder_->CodeOrFile(light_field, id, *image, factors_.Of(id.value));
+        made) {
       coded = *std::move(made);
       lost = coder_->ErrorOf(*image, *coded);
       if (const Result<void> added = writer->Add(id, *coded); !added) error = added.error();
@@ -158,13 +168,14 @@ void Compressor::AddOne(PackedStoreWriter* writer, LfImageId id) {
       error_ = *error;
     }
   } else {
-    Count(*image, *coded, lost, name);
+    Count(id, *image, *coded, lost);
   }
   if (progress_) progress_(now_);
 }
 
-void Compressor::Count(const RecordedImage& image, const CodedImage& coded, const CodeError& lost,
-                       const std::string& name) {
+void Compressor::Count(LfImageId id, const RecordedImage& image, const CodedImage& coded,
+                       const CodeError& lost) {
+  const std::string& name = source_.light_field.image_names[id.value];
   const uint64_t pixel_bytes =
       std::visit([](const auto& pixels) { return pixels.size_bytes(); }, image.pixels);
   ++report_.coded_count;
@@ -175,6 +186,7 @@ void Compressor::Count(const RecordedImage& image, const CodedImage& coded, cons
   report_.pixel_bytes += pixel_bytes;
   report_.code_bytes += coded.code.size() + coded.mask.size();
   report_.error += lost;
+  if (!errors_.empty()) errors_[id.value] = lost.Mean();
   if (report_.worst_name.empty() || lost.PsnrDb() < report_.worst_psnr_db ||
       (lost.PsnrDb() == report_.worst_psnr_db && name < report_.worst_name)) {
     report_.worst_psnr_db = lost.PsnrDb();
@@ -215,9 +227,9 @@ Result<void> Compressor::CheckFiles(const PackedStoreWriter& writer) {
 
 Result<void> Compressor::Write(FileLock lock) {
   coder_.emplace(source_.light_field.encoding, settings_, options_.files);
-  LF_ASSIGN_OR_RETURN(
-      PackedStoreWriter writer,
-      OpenWriter(source_, options_, PlanOf(source_, options_, settings_), std::move(lock)));
+  LF_ASSIGN_OR_RETURN(PackedStoreWriter writer,
+                      OpenWriter(source_, options_, PlanOf(source_, options_, settings_, factors_),
+                                 std::move(lock)));
   LF_RETURN_IF_ERROR(CheckFiles(writer));
   std::vector<LfImageId> ids;
   for (const LfImageId id : Ordered())
@@ -227,7 +239,7 @@ Result<void> Compressor::Write(FileLock lock) {
   now_.done = report_.resumed_count;
   LogDebug("{}: {} LF images to be encoded, {} are encoded; codec {}; {} threads",
            options_.store.string(), ids.size(), report_.resumed_count,
-           NameOf(settings_, options_.files), pool_.thread_count());
+           NameOf(settings_, options_.files, factors_), pool_.thread_count());
   pool_.ForEach(ids.size(), [&](size_t i) { AddOne(&writer, ids[i]); });
   std::sort(report_.skipped.begin(), report_.skipped.end(),
             [](const auto& a, const auto& b) { return a.name < b.name; });
@@ -250,9 +262,13 @@ Result<void> Compressor::Write(FileLock lock) {
 }
 
 VerifyOptions Compressor::Verification() const {
-  return {options_.store,   settings_,
-          options_.files,   PlanOf(source_, options_, settings_),
-          !options_.resume, [this] { return IsInterrupted(); }};
+  return {options_.store,
+          settings_,
+          factors_,
+          options_.files,
+          PlanOf(source_, options_, settings_, factors_),
+          !options_.resume,
+          [this] { return IsInterrupted(); }};
 }
 
 Result<void> Compressor::Verify() {
@@ -305,11 +321,12 @@ Result<void> Compressor::CheckTarget() {
 Result<void> Compressor::ChooseThreshold() {
   if (options_.target_psnr_db) {
     LF_ASSIGN_OR_RETURN(settings_.threshold,
-                        FindThreshold(source_, settings_, *options_.target_psnr_db, pool_,
-                                      [this] { return IsInterrupted(); }));
+                        FindThreshold(source_, settings_, *options_.target_psnr_db, options_.use,
+                                      pool_, [this] { return IsInterrupted(); }));
     LogDebug("{{target_psnr {}}}: threshold {}", *options_.target_psnr_db, settings_.threshold);
   }
   report_.threshold = settings_.threshold;
+  report_.factors = factors_;
   return {};
 }
 
@@ -335,6 +352,8 @@ Result<CompressReport> Compressor::Run() {
     LF_RETURN_IF_ERROR(Write(std::move(*held.lock)));
   }
   if (options_.verify) LF_RETURN_IF_ERROR(Verify());
+  if (options_.use != nullptr && report_.coded_count + report_.skipped.size() == ids_.size())
+    report_.frames = PredictFrames(*options_.use, errors_);
   report_.store_bytes = StoreBytes(options_.store);
   report_.total_s = Now() - begin_s;
   return std::move(report_);
@@ -342,7 +361,8 @@ Result<CompressReport> Compressor::Run() {
 
 }  // namespace
 
-std::string NameOf(const CodecSettings& settings, KeepFiles files) {
+std::string NameOf(const CodecSettings& settings, KeepFiles files,
+                   const ThresholdFactors& factors) {
   const char* const kept = files == KeepFiles::kSmaller ? ", or the image file if it is smaller"
                            : files == KeepFiles::kAll   ? ", or the image file"
                                                         : "";
@@ -351,8 +371,8 @@ std::string NameOf(const CodecSettings& settings, KeepFiles files) {
       return fmt::format("thesis, levels {}, threshold {}, quantizer {}", settings.levels,
                          settings.threshold, settings.quantizer);
     case CodecProfile::kDefault:
-      return fmt::format("default, levels {}, threshold {}{}", settings.levels, settings.threshold,
-                         kept);
+      return fmt::format("default, levels {}, threshold {}{}{}", settings.levels,
+                         settings.threshold, factors.Words(), kept);
     case CodecProfile::kLossless:
       break;
   }

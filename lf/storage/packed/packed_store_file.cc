@@ -17,6 +17,7 @@
 #include "lf/storage/packed/packed_format.h"
 #include "lf/storage/packed/part_file.h"
 #include "lf/storage/packed/part_set.h"
+#include "lf/storage/packed/plan_settings.h"
 #include "lf/storage/packed/plane_table.h"
 #include "lf/storage/tables/calibration_tables.h"
 #include "lf/storage/tables/stored_numbers.h"
@@ -296,6 +297,7 @@ Result<PackedStoreFacts> ReadPackedStore(const fs::path& path) {
   facts.source = settings.Text("light_field");
   facts.codec = settings.Text("codec");
   facts.written_by = settings.Text("written_by");
+  LF_ASSIGN_OR_RETURN(facts.films, FilmsOf(settings));
   LF_ASSIGN_OR_RETURN(const double shards, settings.Number("shards", 0, kMostShards));
   facts.shard_count = static_cast<size_t>(shards);
   LF_ASSIGN_OR_RETURN(light_field.intrinsics, ReadIntrinsics(settings, &store.database));
@@ -332,6 +334,11 @@ Result<DisplayLevels> ReadDisplayLevels(const fs::path& path) {
 Result<std::string> ReadCodecSettings(const fs::path& path) {
   LF_ASSIGN_OR_RETURN(const OpenedStore store, OpenComplete(path));
   return store.settings.Text("codec");
+}
+
+Result<std::optional<StoreFilms>> ReadStoreFilms(const fs::path& path) {
+  LF_ASSIGN_OR_RETURN(const OpenedStore store, OpenComplete(path));
+  return FilmsOf(store.settings);
 }
 
 Result<LightFieldIdentity> ReadWholeIdentity(const fs::path& path) {

@@ -56,6 +56,15 @@ std::vector<std::filesystem::path> PackedStoresIn(const std::filesystem::path& f
 // Stands for the number in the whole light field of a virtual LF image, which has none.
 inline constexpr uint32_t kNoWholeId = UINT32_MAX;
 
+// The films that a store was encoded for: its LF images have thresholds of their own, by how much
+// these films use each of them.
+struct StoreFilms {
+  std::vector<std::string> lenses;  // of each film, HashOfLenses() (render/state/run_inputs.h)
+  std::string lens_weights;         // NameOf(LensWeights)
+  size_t frame_count = 0;           // number of frames that were considered, of all films together
+  std::string source = {};          // PackedStoreFacts::source; set when a store is read
+};
+
 // Everything in a packed store but the encoded images.
 struct PackedStoreFacts {
   LightField light_field;    // LF cameras of the store; `folder` is the store's file; no mask
@@ -65,6 +74,7 @@ struct PackedStoreFacts {
   std::string source;               // LIGHTFIELD or packages that the store was made from
   std::string codec;                // settings of the codec, in words
   std::string written_by;
+  std::optional<StoreFilms> films;         // set if the store was encoded for certain films
   std::optional<DensifiedPlan> densified;  // set if the store is densified
   size_t shard_count = 0;  // number of shards; 0: the encoded images are in the store's file itself
   size_t left_out_count = 0;  // number of LF images that were left out on purpose
@@ -103,6 +113,9 @@ Result<DisplayLevels> ReadDisplayLevels(const std::filesystem::path& path);
 // kLosslessCodec restore the recorded values exactly.
 Result<std::string> ReadCodecSettings(const std::filesystem::path& path);
 inline constexpr std::string_view kLosslessCodec = "lossless";
+
+// Returns PackedStoreFacts::films without reading the other facts.
+Result<std::optional<StoreFilms>> ReadStoreFilms(const std::filesystem::path& path);
 
 // Returns PackedStoreFacts::whole without reading the other facts.
 Result<LightFieldIdentity> ReadWholeIdentity(const std::filesystem::path& path);

@@ -31,6 +31,7 @@ struct PackedStorePlan {
   std::vector<PixelRect> rects;
   std::string codec;                                 // all settings of the encoder, in words
   std::optional<DisplayLevels> display_levels = {};  // set if images are encoded as kDisplay16
+  std::optional<StoreFilms> films = {};  // set if `codec` has thresholds for certain films
   // Size of a shard. If it is not 0, the encoded images are in STORE-0001.lfs, STORE-0002.lfs, ...
   // of about this size, beside STORE.lfs, which has everything else. 0: the store is one file.
   uint64_t shard_bytes = 0;
