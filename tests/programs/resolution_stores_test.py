@@ -180,15 +180,15 @@ class ResolutionStoresTest(ProgramTestCase):
         self.assertEqual(self.frames("film_of_one", *files, "--lightfield", one),
                          self.frames("film", *files, "--lightfield", film))
         self.assertEqual(self.frames("alone_of_one", one, path), self.frames("alone", film, path))
-        # What a store of packages has is copied, too.
+        # The LF images of a store of packages are copied as well.
         self.succeeds(COMPRESSOR, film, "-o", self.folder / "again.lfs", "--by-resolution", "--verify")
         self.assertEqual(self.frames("again", self.folder / "again.lfs", path), self.frames("alone2", film, path))
         for words, options in ((["copied as they are", "--threshold"], ["--threshold", 5]),
                                (["--needed-pixels", "copied as they are"], ["--needed-pixels"])):
             self.fails(2, words, COMPRESSOR, *files, "--lightfield", one, "-o", self.folder / "none.lfs", *options)
         self.fails(2, ["cannot be compressed again into itself"], COMPRESSOR, one, "-o", one, "--overwrite")
-        self.fails(3, ["made with the encoding"], COMPRESSOR, self.field, "-o", self.store, "--by-resolution", "--verify",
-                   "--threshold", 5)
+        self.fails(3, ["made with the encoding"], COMPRESSOR, self.field, "-o", self.store, "--by-resolution",
+                   "--verify", "--threshold", 5)
         # A damaged encoded image is left out, and named.
         part = bytearray(self.part(3).read_bytes())
         part[200] ^= 1
