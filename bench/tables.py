@@ -51,6 +51,8 @@ TABLES = {
     "scale": ("performance", "bench/scale.py {build}", "--counts 100,200 --weighed 100 --frames 5 --packages 2"),
     "memory_bound": ("performance", "bench/memory_bound.py {build} {data}/data/blender-shop", "--frames 1 --images 4"),
     "packed_stores": ("codec", "bench/packed_stores.py {build}", "--count 4 --size 64x64 --runs 1"),
+    "remote_stores": ("remote_stores", "bench/remote_stores.py {build}", None),
+    "remote_reads": ("remote_stores", "bench/remote_reads.py {build}", "--count 9 --size 64x48"),
     "live_speed": ("visualizer", "bench/live_speed.py {build} --data {data}",
                    "--only many --cameras 1000 --pictures 3"),
     "codec": ("codec", "bench/codec_table.py {build} --data {data} --pictures doc/images",

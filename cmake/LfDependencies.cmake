@@ -59,7 +59,7 @@ target_include_directories(lf_lcms SYSTEM INTERFACE ${LF_LCMS_INCLUDE})
 target_link_libraries(lf_lcms INTERFACE ${LF_LCMS_LIBRARY})
 
 # Optional: formats of image files (doc/formats/images.md). Small libraries are linked. Those that load many others are
-# loaded when the first file needs them (lf/pixels/files/loaded_library.h), and only their headers are used here.
+# loaded when the first file needs them (lf/core/loaded_library.h), and only their headers are used here.
 add_library(lf_picture_libraries INTERFACE)
 target_link_libraries(lf_picture_libraries INTERFACE ${CMAKE_DL_LIBS})
 set(LF_PICTURE_LIBRARIES)  # names of those that are linked
@@ -85,15 +85,20 @@ macro(lf_link_picture_library key library)
   endif()
 endmacro()
 
-# lf_load_picture_library(KEY)  defines LF_KEY_LIBRARY_NAME, the file that the library is loaded from: its SONAME
+# lf_define_library_name(TARGET KEY)  defines LF_KEY_LIBRARY_NAME, the file that LF_KEY_LIBRARY is loaded from: its SONAME
+function(lf_define_library_name target key)
+  execute_process(COMMAND ${CMAKE_OBJDUMP} -p ${LF_${key}_LIBRARY} OUTPUT_VARIABLE headers ERROR_QUIET)
+  if(headers MATCHES "SONAME +([^ \n]+)")
+    target_compile_definitions(${target} INTERFACE LF_${key}_LIBRARY_NAME="${CMAKE_MATCH_1}")
+  else()
+    message(STATUS "${LF_${key}_LIBRARY} has no SONAME: the programs are built without it")
+  endif()
+endfunction()
+
+# lf_load_picture_library(KEY)  lets a library be loaded when the first file needs it
 function(lf_load_picture_library key)
   if(FOUND_${key})
-    execute_process(COMMAND ${CMAKE_OBJDUMP} -p ${LF_${key}_LIBRARY} OUTPUT_VARIABLE headers ERROR_QUIET)
-    if(headers MATCHES "SONAME +([^ \n]+)")
-      target_compile_definitions(lf_picture_libraries INTERFACE LF_${key}_LIBRARY_NAME="${CMAKE_MATCH_1}")
-    else()
-      message(STATUS "${LF_${key}_LIBRARY} has no SONAME: the programs are built without it")
-    endif()
+    lf_define_library_name(lf_picture_libraries ${key})
   endif()
 endfunction()
 
@@ -107,6 +112,17 @@ lf_find_picture_library(HEIF HEIF libheif/heif.h heif)
 lf_load_picture_library(HEIF)
 lf_find_picture_library(HDF5 HDF5 hdf5.h hdf5 hdf5/serial)
 lf_load_picture_library(HDF5)
+
+# Optional: light fields on web servers. libcurl, which loads 30 others, is loaded when the first is opened.
+find_path(LF_CURL_INCLUDE curl/curl.h)
+find_library(LF_CURL_LIBRARY NAMES curl curl-gnutls)
+add_library(lf_curl INTERFACE)
+if(LF_CURL_INCLUDE AND LF_CURL_LIBRARY)
+  target_include_directories(lf_curl SYSTEM INTERFACE ${LF_CURL_INCLUDE})
+  lf_define_library_name(lf_curl CURL)
+else()
+  message(STATUS "libcurl is missing: the programs are built without light fields on web servers")
+endif()
 
 # Optional: display views of frames (--view).
 find_path(LF_OCIO_INCLUDE OpenColorIO/OpenColorIO.h)

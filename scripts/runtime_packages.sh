@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Prints the Debian packages that programs need to run: those of the shared libraries that they load at their start, or
-# when the first file needs them (lf/pixels/files/loaded_library.h), and ffmpeg, which they start. The libraries must be installed here.
+# when the first file needs them (lf/core/loaded_library.h), and ffmpeg, which they start. The libraries must be installed here.
 #
 # usage: scripts/runtime_packages.sh FOLDER      FOLDER holds the programs, such as build/release/bin
 set -euo pipefail
@@ -21,7 +21,7 @@ if grep -q 'not found' <<<"$loaded"; then
   exit 1
 fi
 # Programs name the libraries that they load later.
-mapfile -t later < <(grep --text --only-matching --no-filename -E 'lib(heif|jxl|hdf5_serial|openjp2)\.so\.[0-9.]+' "${programs[@]}" | sort -u)
+mapfile -t later < <(grep --text --only-matching --no-filename -E 'lib(heif|jxl|hdf5_serial|openjp2|curl)\.so\.[0-9.]+' "${programs[@]}" | sort -u)
 for name in "${later[@]}"; do
   path=$(/sbin/ldconfig -p | awk -v name="$name" '$1 == name && !count++ { print $NF }')
   if [[ -z $path ]]; then

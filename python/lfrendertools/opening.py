@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import os
 import pathlib
+import re
 from typing import Any, Optional, Sequence, Tuple, Union
 
 from . import _core, arguments
 from .arguments import FilePath
 from .light_field import LightField
 
+_URL = re.compile("[A-Za-z][A-Za-z0-9+.-]*://")
 _LAYOUTS = ("", "mosaic", "quilt", "lenslets")
 _ALPHAS = ("auto", "mask", "straight", "premultiplied")
 
@@ -20,15 +22,16 @@ def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[
          plane_distance: Optional[float] = None, flip_x: bool = False, flip_y: bool = False,
          grid: Optional[Tuple[int, int]] = None, serpentine: bool = False, layout: str = "",
          time: Union[None, float, Sequence[float]] = None, recorded_fps: Optional[float] = None,
-         frame_cache: Optional[FilePath] = None, reduce: int = 1) -> LightField:
+         frame_cache: Optional[FilePath] = None, store_cache: Optional[FilePath] = None, reduce: int = 1
+         ) -> LightField:
     """Open a light field of any supported form.
 
     Parameters
     ----------
     path : path
         A calibration file or its folder (transforms.json, COLMAP, Middlebury, LLFF, HCI, AOS, exports of other
-        programs), a packed store (STORE.lfs), a folder of images with Stanford names, or a picture that holds the views
-        of a grid of cameras.
+        programs), a packed store (STORE.lfs), the URL of one on a web server (https://HOST/STORE.lfs), a folder of
+        images with Stanford names, or a picture that holds the views of a grid of cameras.
     focal_px : float, optional
         Focal length in pixels, for folders with Stanford names and trajectories in the form of TUM's benchmark.
     fov_deg : float, optional
@@ -57,6 +60,8 @@ def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[
         For light field videos in folders of frames: frames per second; 30 if it is not given.
     frame_cache : path, optional
         For light field videos: folder into which frames are decoded, in place of the one beside the light field.
+    store_cache : path, optional
+        For URLs: folder for local copies, in place of the one in the user's cache folder.
     reduce : int, optional
         Load LF images at 1/reduce of their width and height: 1, 2, 4 or 8.
 
@@ -83,7 +88,7 @@ def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[
     (3, 3, 60, 80, 3)
     """
     # The working directory may change while the light field is open.
-    source = _absolute("path", path)
+    source = _name_of_light_field(path)
     if pitch is not None:
         pair = arguments.numbers("pitch", pitch if hasattr(pitch, "__len__") else (pitch, pitch), 2, 2)
         pitch = (pair[0], pair[1])
@@ -103,8 +108,14 @@ def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[
         [arguments.real("time", value) for value in times],
         0.0 if recorded_fps is None else arguments.positive("recorded_fps", recorded_fps),
         b"" if frame_cache is None else os.fsencode(_absolute("frame_cache", frame_cache)),
+        b"" if store_cache is None else os.fsencode(_absolute("store_cache", store_cache)),
         arguments.whole("reduce", reduce))
     return LightField(core, source)
+
+
+def _name_of_light_field(path: FilePath) -> str:
+    name = os.fsdecode(arguments.file_name("path", path))
+    return name if _URL.match(name) else _absolute("path", path)
 
 
 def _absolute(name: str, path: FilePath) -> str:

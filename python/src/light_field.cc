@@ -42,19 +42,18 @@ namespace py = pybind11;
 
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-std::shared_ptr<OpenedField> Open(const std::string& path, double focal_px, double fov_deg,
-                                  const std::string& images, const std::string& image_scale,
-                                  const std::string& image_alpha, const std::string& background,
-                                  const std::optional<std::array<double, 2>>& pitch,
-                                  std::optional<double> plane_distance,
-                                  const std::optional<std::array<int, 2>>& grid,
-                                  const std::string& layout, const std::array<bool, 3>& flips,
-                                  const std::vector<double>& times, double recorded_fps,
-                                  const std::string& frame_cache, int reduce) {
+std::shared_ptr<OpenedField> Open(
+    const std::string& path, double focal_px, double fov_deg, const std::string& images,
+    const std::string& image_scale, const std::string& image_alpha, const std::string& background,
+    const std::optional<std::array<double, 2>>& pitch, std::optional<double> plane_distance,
+    const std::optional<std::array<int, 2>>& grid, const std::string& layout,
+    const std::array<bool, 3>& flips, const std::vector<double>& times, double recorded_fps,
+    const std::string& frame_cache, const std::string& store_cache, int reduce) {
   LightFieldWords words;
   if (times.size() == 1) words.time = times[0];
   if (recorded_fps > 0) words.recorded_fps = recorded_fps;
   words.frame_cache = frame_cache;
+  words.store_cache = store_cache;
   words.reduce = reduce;
   words.focal_px = focal_px;
   words.fov_deg = fov_deg;

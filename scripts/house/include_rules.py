@@ -36,6 +36,7 @@ OWNERS = {
     "xxhash": {"core"},
     "unicode/": {"light_field/model"},
     "sqlite3": {"storage/sqlite"},
+    "curl/": {"storage/remote"},
     "CLI/": set(),
     "microhttpd": set(),
 }

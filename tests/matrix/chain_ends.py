@@ -60,6 +60,7 @@ READ = {"light_field": "light field", "store": "light field", "path": "path", "p
 # Options whose files no program of ours writes, or that are read in another way; (call or "any", option): reason.
 NOT_READ = {
     ("any", "--images"): "images that were moved",
+    ("any", "--store-cache"): "copies of stores on web servers, tests.remote_store",
     ("any", "--frame-cache"): "frames that programs decode for themselves, tests.light_field_video",
     ("any", "--cache"): "depths that programs keep for themselves, tests.densify_cache",
     ("lfimport", "--masks"): "masks that people or other programs made, tests.found_captures",

@@ -9,6 +9,8 @@
 
 #include "tools/common/process_start.h"
 
+#include "lf/storage/remote/remote_options.h"
+
 namespace lf {
 namespace {
 
@@ -90,6 +92,7 @@ const std::atomic<bool>& CatchInterruptsOfJob() {
   action.sa_handler = OnSignal;
   for (const int signal : {SIGINT, SIGTERM}) ::sigaction(signal, &action, nullptr);
   if (!IsIgnored(SIGHUP)) ::sigaction(SIGHUP, &action, nullptr);
+  StopRemoteReadsIf(&interrupted);
   return interrupted;
 }
 
@@ -99,6 +102,7 @@ RenderSignals& CatchRenderSignals() {
   action.sa_flags = SA_RESTART;
   for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) ::sigaction(signal, &action, nullptr);
   if (!IsIgnored(SIGHUP)) ::sigaction(SIGHUP, &action, nullptr);
+  StopRemoteReadsIf(&render_signals.stop);
   return render_signals;
 }
 

@@ -15,6 +15,7 @@ namespace lf {
 // If the program has not ended 1.5 seconds after the first signal, because some step of its work
 // takes longer, it ends by EndInterrupted() (process_start.h). Its files must therefore be right
 // after a kill, as those of every program are: a result gets its name only when it is complete.
+// Reads from web servers end soon after the first signal.
 const std::atomic<bool>& CatchInterrupts();
 
 // As CatchInterrupts(), but gives the program the time that it needs to end: for a program that

@@ -45,6 +45,12 @@ void AddUnusualOptions(CLI::App& app, LightFieldArgument& argument) {
       "beside LIGHTFIELD is kept below 16 GiB: frames that were not used for a day are "
       "removed first. Nothing is removed from DIR.");
   unusual.Add(
+      "--store-cache DIR", argument.store_cache,
+      "Folder for local copies of stores on web servers (in ~/.cache)\n"
+      "What is read of a store is kept there for later calls. The folder in ~/.cache, or in "
+      "$XDG_CACHE_HOME, is kept below 16 GiB: stores that were not used for a day are removed "
+      "first. Nothing is removed from DIR.");
+  unusual.Add(
       "--image-scale FACTOR", argument.image_scale,
       "Size of the image files relative to calibration\n"
       "FACTOR: size of the image files divided by the calibrated size, such as 0.25\n"
@@ -68,7 +74,8 @@ void LightFieldArgument::AddTo(CLI::App& app) {
            "Calibration file, its folder, or a packed store\n"
            "The calibration is a transforms.json, a calibration of COLMAP, Middlebury, LLFF, "
            "HCI or AOS, or an export of another program, such as Metashape or Meshroom "
-           "(doc/inputs.md). A packed store is one file, STORE.lfs. A folder of images with "
+           "(doc/inputs.md). A packed store is one file, STORE.lfs, or its URL on a web server, "
+           "https://HOST/STORE.lfs (doc/remote_stores.md). A folder of images with "
            "Stanford names is also a light field: the names contain the calibration. lfimport "
            "also opens other folders of images, and pictures that hold many views.")
       ->required()

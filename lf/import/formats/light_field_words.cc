@@ -62,6 +62,7 @@ bool SetByOption(const std::string& option, const std::string& value, LightField
   }
   if (option == OptionFor("recorded_fps")) return set_number(kAny, &words->recorded_fps.emplace());
   if (option == OptionFor("frame_cache")) return set(true, &words->frame_cache);
+  if (option == OptionFor("store_cache")) return set(true, &words->store_cache);
   if (option == OptionFor("reduce")) {
     double number = 0;
     const bool is_set = set_number(kMostReduction, &number);
@@ -93,6 +94,7 @@ Result<OpenOptions> LightFieldWords::Options() const {
   options.recorded_fps = recorded_fps;
   options.reduce = reduce;
   if (!frame_cache.empty()) options.frame_cache = frame_cache;
+  if (!store_cache.empty()) options.store_cache = store_cache;
   return options;
 }
 
@@ -110,13 +112,14 @@ std::vector<std::string> LightFieldWords::Words() const {
   if (time) add("time", fmt::format("{}", *time));
   if (recorded_fps) add("recorded_fps", fmt::format("{}", *recorded_fps));
   if (!frame_cache.empty()) add("frame_cache", FileArgument(frame_cache));
+  if (!store_cache.empty()) add("store_cache", FileArgument(store_cache));
   if (reduce != 1) add("reduce", fmt::format("{}", reduce));
   return words;
 }
 
 std::vector<std::string> LightFieldWords::WordsToKeep() const {
   LightFieldWords kept = *this;
-  for (std::string* const folder : {&kept.images, &kept.frame_cache})
+  for (std::string* const folder : {&kept.images, &kept.frame_cache, &kept.store_cache})
     if (!folder->empty()) *folder = std::filesystem::absolute(*folder).lexically_normal().string();
   return kept.Words();
 }

@@ -18,7 +18,7 @@ struct LightFieldWords {
   double fov_deg = 0;
   std::string images, image_scale = "auto", image_alpha = "auto", background;
   std::optional<double> time, recorded_fps;
-  std::string frame_cache;
+  std::string frame_cache, store_cache;
   int reduce = 1;
 
   // Converts the options. kUsage if a value cannot be parsed.

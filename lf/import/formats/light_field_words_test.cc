@@ -29,6 +29,7 @@ TEST(LightFieldWords, AreReadAgainInAnotherFolder) {
   words.time = -0.1;
   words.recorded_fps = 29.97;
   words.frame_cache = "decoded";
+  words.store_cache = "copied";
   const Words kept = words.WordsToKeep();
   const auto read = LightFieldWords::Of("field", kept);
   ASSERT_TRUE(read);
@@ -41,6 +42,7 @@ TEST(LightFieldWords, AreReadAgainInAnotherFolder) {
   EXPECT_EQ(read->time, words.time);
   EXPECT_EQ(read->recorded_fps, words.recorded_fps);
   EXPECT_EQ(read->frame_cache, (std::filesystem::current_path() / "decoded").string());
+  EXPECT_EQ(read->store_cache, (std::filesystem::current_path() / "copied").string());
   EXPECT_EQ(read->Words(), kept);
 }
 

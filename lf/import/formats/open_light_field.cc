@@ -38,6 +38,8 @@
 #include "lf/pixels/files/hdf5_array.h"
 #include "lf/pixels/files/view_array.h"
 #include "lf/storage/packed/packed_store_file.h"
+#include "lf/storage/remote/store_cache.h"
+#include "lf/storage/remote/store_url.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -433,7 +435,11 @@ Result<std::vector<Vec3>> PointsSeenBy(const fs::path& path, const LightField& l
 }
 
 Result<LightField> OpenLightField(const fs::path& path, const OpenOptions& options) {
-  LF_ASSIGN_OR_RETURN(LightField light_field, OpenCalibration(path, options));
+  fs::path local = path;
+  if (IsUrl(path.string())) {
+    LF_ASSIGN_OR_RETURN(local, OpenRemoteStore(path.string(), {.folder = options.store_cache}));
+  }
+  LF_ASSIGN_OR_RETURN(LightField light_field, OpenCalibration(local, options));
   light_field.source = path;
   LF_RETURN_IF_ERROR(ChooseTimes(options, path, &light_field));
   if (!HoldsPackedStore(light_field)) {

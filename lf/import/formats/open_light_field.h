@@ -56,6 +56,9 @@ struct OpenOptions {
   // Folder into which frames of videos are decoded, from which nothing is removed; unset: beside
   // the light field (import/video/video_frames.h).
   std::optional<std::filesystem::path> frame_cache = {};
+  // Folder for local copies of stores on web servers, from which nothing is removed; unset:
+  // StoreCacheOptions::folder (storage/remote/store_cache.h).
+  std::optional<std::filesystem::path> store_cache = {};
   // Repeats the running call in the question for a time; unset: the question names the option
   // alone.
   CallAgain call_again = {};
@@ -91,7 +94,8 @@ bool HoldsLightField(const std::filesystem::path& folder);
 //   them
 bool HoldsOwnAndItsSource(const std::filesystem::path& folder, bool has_grid = false);
 
-// Opens a calibration file, or the first of these that it finds in a folder:
+// Opens the packed store of a URL (storage/remote/store_cache.h), whose local copy is then
+// LightField::folder; a calibration file; or the first of these that it finds in a folder:
 // - transforms.json, or any .json file without M3x4 matrices:
 //   light_field/transforms_json/transforms_json.h
 // - a COLMAP model, in the folder, its sparse/0 or below: light_field/colmap/read_colmap.h
@@ -132,7 +136,9 @@ bool HoldsOwnAndItsSource(const std::filesystem::path& folder, bool has_grid = f
 // images_folder has none of the images; masks_folder has none of the masks; camera raw files with
 // an unknown Bayer pattern. A packed store by resolution that lacks its finest parts is opened as a
 // light field of smaller LF images, with a warning. kUsage: an option that the calibration does not
-// allow; a light field video without a time. kOutput: frames of a video cannot be decoded.
+// allow; a light field video without a time; a URL of another form than https://HOST/STORE.lfs.
+// kOutput: frames of a video cannot be decoded; the server of a URL cannot be reached (errors of
+// OpenRemoteStore()).
 Result<LightField> OpenLightField(const std::filesystem::path& path,
                                   const OpenOptions& options = {});
 

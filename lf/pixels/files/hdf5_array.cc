@@ -34,7 +34,7 @@ std::string SaveCommand(const std::filesystem::path& file) {
 #include <tuple>
 #include <utility>
 
-#include "lf/pixels/files/loaded_library.h"
+#include "lf/core/loaded_library.h"
 #include "lf/pixels/files/picture_decoder.h"
 #include "lf/pixels/files/views_shape.h"
 

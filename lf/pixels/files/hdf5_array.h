@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Arrays of views in HDF5 files (.h5), such as lf.h5 of the first light field benchmark of the HCI:
 // the dataset LF, or the dataset "views" that Python's lf.views() writes. libhdf5 is loaded when
-// the first such file is opened (loaded_library.h). The pixels of a view are read without the
+// the first such file is opened (core/loaded_library.h). The pixels of a view are read without the
 // others, unless the chunks of the file hold several views. All functions may be called by many
 // threads at once; one of them reads at a time.
 #pragma once

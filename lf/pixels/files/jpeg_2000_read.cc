@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "lf/pixels/files/loaded_library.h"
+#include "lf/core/loaded_library.h"
 
 namespace lf {
 namespace {

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lf/pixels/files/loaded_library.h"
+#include "lf/core/loaded_library.h"
 
 namespace lf {
 namespace {

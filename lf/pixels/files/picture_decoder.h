@@ -4,7 +4,7 @@
 // Each uses the library of its format, such as libpng, or none if the pixels lie in the file as
 // they are. A library for all formats, such as OpenImageIO, would load some 250 further libraries
 // into every program. The libraries of formats that few people use, which load many others
-// themselves, are loaded when the first such file is read (loaded_library.h).
+// themselves, are loaded when the first such file is read (core/loaded_library.h).
 #pragma once
 
 #include <cstdint>

@@ -75,7 +75,8 @@ struct PackageImage {
 
 // How the light field of a package was opened when the package was made.
 struct PackageSource {
-  std::filesystem::path light_field;  // the argument LIGHTFIELD: a calibration, folder or store
+  // The argument LIGHTFIELD: a calibration, folder or store, or the URL of a store.
+  std::filesystem::path light_field;
   // Options of LIGHTFIELD and their values, as words of a command line; empty: none was given.
   std::vector<std::string> options;
 };

@@ -11,6 +11,7 @@
 #include "lf/light_field/model/brackets.h"
 #include "lf/render/package/package_file.h"
 #include "lf/render/package/package_format.h"
+#include "lf/storage/remote/store_url.h"
 #include "lf/storage/sqlite/seal.h"
 #include "lf/storage/tables/calibration_tables.h"
 #include "lf/storage/tables/stored_numbers.h"
@@ -124,10 +125,12 @@ Result<void> Reader::ReadChoices() {
   return {};
 }
 
-// Returns the path that a file or folder had when the package was made. If it no longer exists,
-// returns the path with the same position relative to the package, if that exists.
+// Returns the path that a file or folder, or the URL that a store, had when the package was made.
+// If it no longer exists, returns the path with the same position relative to the package, if that
+// exists.
 fs::path Reader::PathOf(const std::string& key) const {
   const fs::path path = settings_.Text(key);
+  if (IsUrl(path.string())) return path;
   std::error_code error;
   if (fs::exists(path, error)) return path;
   const fs::path from_here =

@@ -11,6 +11,7 @@
 #include "lf/core/file.h"
 #include "lf/render/package/package_file.h"
 #include "lf/render/package/package_format.h"
+#include "lf/storage/remote/store_url.h"
 #include "lf/storage/sqlite/seal.h"
 #include "lf/storage/tables/calibration_tables.h"
 #include "lf/storage/tables/stored_numbers.h"
@@ -59,9 +60,10 @@ class Writer {
                             {"folder", folder.string()},
                             {"folder_from_package", from_package(folder)}};
     if (!notes.light_field.empty()) {
-      const fs::path source = absolute(notes.light_field);
+      const bool is_url = IsUrl(notes.light_field);
+      const fs::path source = is_url ? fs::path(notes.light_field) : absolute(notes.light_field);
       settings.emplace_back("light_field.path", source.string());
-      settings.emplace_back("light_field.path_from_package", from_package(source));
+      if (!is_url) settings.emplace_back("light_field.path_from_package", from_package(source));
       settings.emplace_back("light_field.options",
                             fmt::format("{}", fmt::join(notes.light_field_options, "\n")));
     }

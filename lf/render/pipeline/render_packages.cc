@@ -7,6 +7,7 @@
 #include <map>
 
 #include "lf/core/log.h"
+#include "lf/core/spelling.h"
 #include "lf/film/develop/video.h"
 #include "lf/light_field/model/image_files.h"
 #include "lf/light_field/model/reduction.h"
@@ -16,6 +17,8 @@
 #include "lf/render/state/run_inputs.h"
 #include "lf/render/state/run_state.h"
 #include "lf/storage/packed/packed_store_file.h"
+#include "lf/storage/remote/store_cache.h"
+#include "lf/storage/remote/store_url.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -158,6 +161,15 @@ void MoveTo(const std::optional<LightFieldPlace>& place, Package* package) {
   if (place) package->light_field.folder = place->folder;
 }
 
+// Returns the local copy of the store on a web server that a package was made from.
+Result<fs::path> CopyOfStore(const PackageSource& source) {
+  StoreCacheOptions options;
+  const auto option =
+      std::find(source.options.begin(), source.options.end(), CommandLineOption({"store_cache"}));
+  if (source.options.end() - option > 1) options.folder = option[1];
+  return OpenRemoteStore(source.light_field.string(), options);
+}
+
 // Reads a package again. All checks are repeated only if the file has changed since OpenPackages().
 Result<Package> OpenAgain(const PackagePart& part, PackagedFilm* film) {
   PackagePart now;
@@ -185,6 +197,9 @@ Result<LightFieldPlace> PlaceOf(const std::string& name, const LightField& light
 
 Result<Package> OpenPackage(const fs::path& path, const std::optional<LightFieldPlace>& place) {
   LF_ASSIGN_OR_RETURN(Package package, ReadPackage(path));
+  if (!place && IsUrl(package.source.light_field.string())) {
+    LF_ASSIGN_OR_RETURN(package.light_field.folder, CopyOfStore(package.source));
+  }
   if (place) {
     if (place->identity != package.whole && place->whole != package.whole)
       return InputError(fmt::format(
@@ -215,6 +230,10 @@ Result<PackagedFilm> OpenPackages(std::vector<fs::path> paths,
     LF_ASSIGN_OR_RETURN(Package package, OpenPackage(path, film.place));
     const Film other(package);
     if (!of_first) of_first = other;
+    // The server is asked once.
+    if (!film.place && IsUrl(package.source.light_field.string()))
+      film.place = LightFieldPlace{ShownUrl(package.source.light_field.string()), package.whole,
+                                   std::nullopt, package.light_field.folder};
     if (const std::string difference = of_first->DifferenceTo(other); !difference.empty())
       return InputError(fmt::format(
           "{}: was made for {} than {}: render these packages separately, into different "

@@ -37,7 +37,8 @@ Result<LightFieldPlace> PlaceOf(const std::string& name, const LightField& light
 
 // Reads a package, and checks it and a few image files of its light field. If the light field is a
 // packed store, checks instead that the store has all LF images and pixels that the package needs.
-//   place  where the light field is now; unset: where ReadPackage() finds it
+//   place  where the light field is now; unset: where ReadPackage() finds it, or the copy of the
+//          store on a web server that the package names
 // kInput: the errors of ReadPackage(); the package was made from another light field than `place`;
 // none of the checked files exists with its recorded size; the packed store lacks LF images or
 // pixels that the package needs.

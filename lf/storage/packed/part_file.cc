@@ -12,6 +12,7 @@
 
 #include "lf/core/file.h"
 #include "lf/core/hash.h"
+#include "lf/storage/remote/store_url.h"
 #include "lf/storage/tables/stored_numbers.h"
 
 namespace lf {
@@ -163,39 +164,24 @@ Result<void> PartWriter::Flush() {
   return {};
 }
 
-Result<PartReader> PartReader::Open(const fs::path& path, const std::string& store, size_t number) {
-  OpenFile file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  const std::optional<uint64_t> size = file.get() < 0 ? std::nullopt : SizeOf(file.get());
-  if (!size) {
-    const ErrorKind kind = file.get() < 0 ? KindOfReadFailure(errno) : ErrorKind::kInput;
-    return Error{kind,
-                 fmt::format("{}: this part of the packed store cannot be read: {}", path.string(),
-                             file.get() < 0 ? SystemReason() : "it is no regular file")};
-  }
-  // A copy that was cut off in the head has none of the LF images.
-  if (!HeadOf(store, number).starts_with(HeadIn(file.get())))
-    return IsNotOfStore(path, number, store);
-  return PartReader(std::move(file), path, *size);
+Result<PartReader> PartReader::Open(const fs::path& path, const std::string& store, size_t number,
+                                    const std::optional<std::string>& url) {
+  LF_ASSIGN_OR_RETURN(CopiedFile file, CopiedFile::Open(path, url));
+  std::string head;
+  LF_ASSIGN_OR_RETURN(const RangeState state,
+                      file.Read(0, kPartHeadBytes, HashBytes(HeadOf(store, number)), &head));
+  if (state == RangeState::kDamaged)
+    return IsNotOfStore(url ? fs::path(ShownUrl(*url)) : path, number, store);
+  // A local copy without a head was cut off there, or was copied from a server in part.
+  const uint64_t bytes = !url ? file.local_bytes() : state == RangeState::kRead ? UINT64_MAX : 0;
+  return PartReader(std::move(file), bytes);
 }
 
-Result<void> PartReader::Read(const PartRange& range, std::string* into) const {
-  if (range.end() > bytes_)
-    return InputError(fmt::format(
-        "{}: has {} bytes, but an LF image is in the bytes {} to {}: the copy is incomplete; copy "
-        "the file again",
-        path_.string(), bytes_, range.begin, range.end()));
-  const size_t before = into->size();
-  into->resize(before + range.bytes);
-  const std::optional<size_t> got =
-      ReadAt(file_.get(), range.begin, range.bytes, into->data() + before);
-  if (!got)
-    return Error{KindOfReadFailure(errno),
-                 fmt::format("{}: cannot be read: {}", path_.string(), SystemReason())};
-  if (*got < range.bytes || HashBytes(std::string_view(*into).substr(before)) != range.hash)
-    return InputError(
-        fmt::format("{}: is damaged: a wrong checksum in the bytes {} to {}; copy the file again",
-                    path_.string(), range.begin, range.end()));
-  return {};
+Result<void> PartReader::Read(const PartRange& range, std::string* into) {
+  LF_ASSIGN_OR_RETURN(const RangeState state,
+                      file_.Read(range.begin, range.bytes, range.hash, into));
+  if (state == RangeState::kRead) return {};
+  return InputError(file_.Complaint());
 }
 
 }  // namespace lf

@@ -19,6 +19,7 @@
 
 #include "lf/core/open_file.h"
 #include "lf/core/result.h"
+#include "lf/storage/remote/copied_file.h"
 
 namespace lf {
 
@@ -87,24 +88,26 @@ class PartWriter {
   bool is_flushed_ = true;
 };
 
-// Reads a part.
+// Reads a part. For one thread.
 class PartReader {
  public:
-  // Opens part `number` of the store with the id `store`. kInput: the file cannot be read, or is
-  // not this part of this store.
+  // Opens part `number` of the store with the id `store`.
+  //   url  URL of the part, if `path` is its local copy (CopiedFile)
+  // kInput: the file cannot be read, or is not this part of this store. Errors of
+  // CopiedFile::Read().
   static Result<PartReader> Open(const std::filesystem::path& path, const std::string& store,
-                                 size_t number);
-  uint64_t bytes() const { return bytes_; }  // size of the file
+                                 size_t number, const std::optional<std::string>& url = {});
+  // Returns the size of the file. For a part on a server: 0 if it is not there, otherwise
+  // UINT64_MAX.
+  uint64_t bytes() const { return bytes_; }
   // Appends the bytes of a range to `into`. kInput: they are not all there, or have another
-  // checksum. The message names the file.
-  Result<void> Read(const PartRange& range, std::string* into) const;
+  // checksum. The message names the file. Errors of CopiedFile::Read().
+  Result<void> Read(const PartRange& range, std::string* into);
 
  private:
-  PartReader(OpenFile file, std::filesystem::path path, uint64_t bytes)
-      : file_(std::move(file)), path_(std::move(path)), bytes_(bytes) {}
+  PartReader(CopiedFile file, uint64_t bytes) : file_(std::move(file)), bytes_(bytes) {}
 
-  OpenFile file_;
-  std::filesystem::path path_;
+  CopiedFile file_;
   uint64_t bytes_;
 };
 

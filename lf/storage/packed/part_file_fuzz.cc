@@ -31,7 +31,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size_bytes) {
   const auto ranges = lf::RangesOfText(bytes.substr(0, text_bytes), 4);
   if (ranges) LF_CHECK(!ranges->pieces.empty() && ranges->PartOf(ranges->pieces.size() - 1, 4) < 4);
   for (size_t number = 0; number < 2; ++number) {
-    const auto part = lf::PartReader::Open(path, store, number);
+    auto part = lf::PartReader::Open(path, store, number);
     LF_CHECK(part || part.error().message.starts_with(path.string()));
     if (!part || !ranges) continue;
     LF_CHECK(part->bytes() == file.size());

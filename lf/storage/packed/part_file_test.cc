@@ -76,7 +76,7 @@ TEST_F(PartFileTest, WhatWasNotCommittedIsDropped) {
     second = writer.Add("two").value();
     EXPECT_EQ(second.begin, committed);
   }
-  const PartReader reader = PartReader::Open(path_, "0123456789abcdef", 2).value();
+  PartReader reader = PartReader::Open(path_, "0123456789abcdef", 2).value();
   EXPECT_EQ(reader.bytes(), kPartHeadBytes + 6);
   std::string bytes;
   ASSERT_TRUE(reader.Read(first, &bytes));

@@ -10,9 +10,19 @@
 
 #include "lf/core/check.h"
 #include "lf/storage/packed/packed_format.h"
+#include "lf/storage/remote/store_cache.h"
+#include "lf/storage/remote/store_url.h"
 
 namespace lf {
 namespace fs = std::filesystem;
+namespace {
+
+// Returns the URL of a part of the store with this URL; nullopt if the store is local.
+std::optional<std::string> UrlOfPart(const std::optional<std::string>& url, size_t number) {
+  return url ? std::optional(PartUrl(*url, static_cast<int>(number))) : std::nullopt;
+}
+
+}  // namespace
 
 Result<size_t> PlannedParts(const Settings& settings) {
   if (settings.Text(kPartsKey).empty()) return 0;
@@ -84,9 +94,10 @@ void PartSetWriter::DropUnused() {
   while (parts_.size() > 1 && parts_.back().bytes() == kPartHeadBytes) parts_.pop_back();
 }
 
-PartSetReader::PartSetReader(fs::path path, Database database, Statement select, std::string store,
-                             size_t part_count)
+PartSetReader::PartSetReader(fs::path path, std::optional<std::string> url, Database database,
+                             Statement select, std::string store, size_t part_count)
     : path_(std::move(path)),
+      url_(std::move(url)),
       database_(std::move(database)),
       select_(std::move(select)),
       store_(std::move(store)),
@@ -97,8 +108,9 @@ Result<PartSetReader> PartSetReader::Open(const fs::path& store_path, Database d
                                           const Settings& settings) {
   LF_ASSIGN_OR_RETURN(const size_t part_count, PlannedParts(settings));
   LF_ASSIGN_OR_RETURN(Statement select, database.Prepare("select ranges from ranges where id = ?"));
-  return PartSetReader(store_path, std::move(database), std::move(select), settings.Text("store"),
-                       part_count);
+  LF_ASSIGN_OR_RETURN(std::optional<std::string> url, UrlOfStore(store_path));
+  return PartSetReader(store_path, std::move(url), std::move(database), std::move(select),
+                       settings.Text("store"), part_count);
 }
 
 Result<ImageRanges> PartSetReader::RangesOf(uint32_t id, uint64_t code_bytes) {
@@ -121,7 +133,8 @@ Result<ImageRanges> PartSetReader::RangesOf(uint32_t id, uint64_t code_bytes) {
 
 Result<PartReader*> PartSetReader::Part(size_t number) {
   if (!parts_[number]) {
-    LF_ASSIGN_OR_RETURN(parts_[number], PartReader::Open(PartPath(path_, number), store_, number));
+    LF_ASSIGN_OR_RETURN(parts_[number], PartReader::Open(PartPath(path_, number), store_, number,
+                                                         UrlOfPart(url_, number)));
   }
   return &*parts_[number];
 }
@@ -131,7 +144,7 @@ Result<void> PartSetReader::ReadCode(const ImageRanges& ranges, size_t piece_cou
   LF_CHECK(piece_count <= ranges.pieces.size());
   code->clear();
   for (size_t i = 0; i < piece_count; ++i) {
-    LF_ASSIGN_OR_RETURN(const PartReader* const part, Part(ranges.PartOf(i, part_count_)));
+    LF_ASSIGN_OR_RETURN(PartReader* const part, Part(ranges.PartOf(i, part_count_)));
     LF_RETURN_IF_ERROR(part->Read(ranges.pieces[i], code));
   }
   return {};
@@ -140,19 +153,27 @@ Result<void> PartSetReader::ReadCode(const ImageRanges& ranges, size_t piece_cou
 Result<void> PartSetReader::ReadMask(const ImageRanges& ranges, std::string* mask) {
   mask->clear();
   if (ranges.mask.bytes == 0) return {};
-  LF_ASSIGN_OR_RETURN(const PartReader* const part, Part(0));
+  LF_ASSIGN_OR_RETURN(PartReader* const part, Part(0));
   return part->Read(ranges.mask, mask);
 }
 
 Result<std::vector<uint64_t>> FoundPartBytes(const fs::path& store_path, const Settings& settings) {
   LF_ASSIGN_OR_RETURN(const std::vector<uint64_t> stated, StatedPartBytes(settings));
+  LF_ASSIGN_OR_RETURN(const std::optional<std::string> url, UrlOfStore(store_path));
   std::vector<uint64_t> found(stated.size());
   for (size_t number = 0; number < stated.size(); ++number) {
     const fs::path path = PartPath(store_path, number);
     std::error_code error;
-    if (number > 0 && !fs::exists(path, error) && !error) break;
-    LF_ASSIGN_OR_RETURN(const PartReader part,
-                        PartReader::Open(path, settings.Text("store"), number));
+    if (!url && number > 0 && !fs::exists(path, error) && !error) break;
+    LF_ASSIGN_OR_RETURN(const PartReader part, PartReader::Open(path, settings.Text("store"),
+                                                                number, UrlOfPart(url, number)));
+    if (url && part.bytes() == 0) {
+      if (number > 0) break;
+      return InputError(
+          fmt::format("{}: is not on the server, although the store needs it: copy all files of "
+                      "the store there",
+                      ShownUrl(*UrlOfPart(url, number))));
+    }
     found[number] = std::min(part.bytes(), stated[number]);
   }
   return found;

@@ -66,11 +66,12 @@ class PartSetReader {
   Result<void> ReadMask(const ImageRanges& ranges, std::string* mask);
 
  private:
-  PartSetReader(std::filesystem::path path, Database database, Statement select, std::string store,
-                size_t part_count);
+  PartSetReader(std::filesystem::path path, std::optional<std::string> url, Database database,
+                Statement select, std::string store, size_t part_count);
   Result<PartReader*> Part(size_t number);
 
   std::filesystem::path path_;
+  std::optional<std::string> url_;  // URL of the store, if `path_` is its local copy
   Database database_;
   Statement select_;
   std::string store_;  // the store's id
@@ -79,7 +80,8 @@ class PartSetReader {
 };
 
 // Returns the size of each part that a store states, as it is found: smaller if the copy is
-// incomplete, and 0 if the part, or one before it, is missing. kInput: a part belongs to another
+// incomplete, and 0 if the part, or one before it, is missing. A part on a server is complete if it
+// is there. kInput: a part belongs to another
 // store, or part 0 is missing.
 Result<std::vector<uint64_t>> FoundPartBytes(const std::filesystem::path& store_path,
                                              const Settings& settings);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loads a shared library when the first file needs it. Internal to this folder.
+// Loads a shared library when it is first needed.
 //
 // A library that many programs link but few use costs each of them its start: libheif, libjxl and
 // libhdf5 load some 45 further libraries, which takes 11 ms and 12 MiB.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lf/pixels/files/loaded_library.h"
+#include "lf/core/loaded_library.h"
 
 #include <dlfcn.h>
 
