@@ -180,7 +180,7 @@ class ResolutionStoresTest(ProgramTestCase):
         self.assertEqual(self.frames("film_of_one", *files, "--lightfield", one),
                          self.frames("film", *files, "--lightfield", film))
         self.assertEqual(self.frames("alone_of_one", one, path), self.frames("alone", film, path))
-        # The LF images of a store of packages are copied as well.
+        # A store of packages is copied with the LF images that it has.
         self.succeeds(COMPRESSOR, film, "-o", self.folder / "again.lfs", "--by-resolution", "--verify")
         self.assertEqual(self.frames("again", self.folder / "again.lfs", path), self.frames("alone2", film, path))
         for words, options in ((["copied as they are", "--threshold"], ["--threshold", 5]),
