@@ -91,6 +91,7 @@ struct DepthArguments {
 
 void AddInput(CLI::App& app, DepthArguments& a) {
   a.light_field.AddTo(app);
+  a.light_field.AddReduceTo(app);
   OptionGroup input(app, kInputGroup);
   a.frame.AddTo(input);
   a.allow_missing.AddTo(app, "the LF images that are compared");

@@ -72,6 +72,7 @@ struct Arguments {
 
 void AddOptions(CLI::App& app, Arguments& a) {
   a.light_field.AddTo(app);
+  a.light_field.AddReduceTo(app);
   OptionGroup input(app, kInputGroup);
   auto* row = input.Add("--row Y", a.row, "Pixel row, for a row of LF cameras")
                   ->check(CLI::Range(0, 1 << 20));

@@ -70,6 +70,7 @@ struct Arguments {
 
 void AddInput(CLI::App& app, Arguments& a) {
   a.render.light_field.AddTo(app);
+  a.render.light_field.AddReduceTo(app);
   OptionGroup input(app, kInputGroup);
   a.frame.AddTo(input);
   a.render.allow_missing.AddTo(app, "the LF images that the largest pass reads");

@@ -73,6 +73,7 @@ struct Arguments {
 
 void AddOptions(CLI::App& app, Arguments& a) {
   a.light_field.AddTo(app);
+  a.light_field.AddReduceTo(app);
   a.allow_missing.AddTo(app, "the LF images that are read");
   OptionGroup output(app, kOutputGroup);
   output.Add("-o,--output OUT", a.output, "Folder, or file: views.npy")

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -19,12 +20,14 @@
 #include "tools/common/store_options.h"
 #include "tools/common/validators.h"
 
+#include "lf/core/parallel.h"
 #include "lf/core/quantities.h"
 #include "lf/core/shell_word.h"
 #include "lf/core/version.h"
 #include "lf/distribute/compress/codec_words.h"
 #include "lf/distribute/compress/compress.h"
 #include "lf/distribute/compress/compress_report.h"
+#include "lf/distribute/compress/image_use.h"
 #include "lf/import/formats/light_field_words.h"
 #include "lf/import/formats/open_light_field.h"
 #include "lf/render/package/package_file.h"
@@ -40,6 +43,7 @@ constexpr lf::HelpTexts kHelp = {
     .examples = R"(  lfcompressor capture/ -o capture.lfs                        # about 45 dB
   lfcompressor capture/ -o capture.lfs --profile lossless     # lossless
   lfcompressor capture/ -o capture.lfs --target-psnr 42 --verify
+  lfcompressor capture/ -o capture.lfs --by-resolution        # for a web server
   lfcompressor packages/package-*.lfp -o film.lfs             # only the part that a film needs
   lfrenderer capture.lfs path.yaml -o frames                  # a store is a LIGHTFIELD
   lfrenderer packages/package-0000.lfp --lightfield film.lfs -o frames)",
@@ -63,6 +67,7 @@ struct Arguments {
   lf::LightFieldArgument light_field;
   lf::CodecWords codec;
   std::string output, shard_size;
+  bool by_resolution = false;
   bool needed_pixels = false, resume = false, overwrite = false, verify = false;
   lf::AllowMissing allow_missing;
 };
@@ -100,6 +105,14 @@ void AddOutput(CLI::App& app, Arguments& a) {
            "The encoded images are written into files beside STORE.lfs, each of about SIZE, such "
            "as 4G. STORE.lfs itself is then small, and needs these files beside it.")
       ->check(lf::NotEmpty());
+  output.AddFlag(
+      "--by-resolution", a.by_resolution,
+      "Split the store by resolution, for copies over a network\n"
+      "The encoded images are written into files beside STORE.lfs. STORE-r0.lfs has the smallest "
+      "pictures of all LF images, and each further file, up to STORE-r3.lfs, doubles their "
+      "resolution. Without the last files the store is a coarser light field, and if a file is "
+      "incomplete, some LF images are missing. Image files are encoded also if they are smaller, "
+      "unless the profile is recorded.");
 }
 
 void AddQuality(CLI::App& app, Arguments& a) {
@@ -137,6 +150,15 @@ void AddQuality(CLI::App& app, Arguments& a) {
           "at least this peak signal-to-noise ratio (PSNR), in dB. Not for --profile lossless.")
       ->check(CLI::Range(10., 90.))
       ->excludes(threshold);
+  quality.AddFlag(
+      "--quality-by-use", a.codec.quality_by_use,
+      "Encode LF images that the film uses most with the best quality\n"
+      "For packages only. The threshold of each LF image is --threshold times a factor from 1/2 to "
+      "2 that follows from its lens weights in all frames of the packages. Frames have about the "
+      "quality of --threshold, in fewer bytes. --target-psnr is then the predicted PSNR of the "
+      "frames. Other films that are rendered from the store may have a lower quality, and a "
+      "warning "
+      "says so.");
   quality.Add("--quantizer N", a.codec.quantizer,
               "Values per coefficient, for --profile thesis\n"
               "Wavelet coefficients are rounded to N values, 2 to 65536. 8bit: 256 values, which "
@@ -171,7 +193,18 @@ lf::Result<lf::CompressOptions> MakeOptions(const Arguments& a, const lf::Common
   if (options.store.extension() != lf::kStoreExtension)
     return lf::UsageError(
         fmt::format("-o {}: expected a file name that ends in {}", a.output, lf::kStoreExtension));
-  LF_RETURN_IF_ERROR(lf::SetCodec(a.codec, &options));
+  if (a.by_resolution && !a.shard_size.empty())
+    return lf::UsageError(
+        "--by-resolution and --shard-size exclude each other, because each says into which files "
+        "the store is split: leave one of them out");
+  if (a.by_resolution && a.needed_pixels)
+    return lf::UsageError(
+        "--by-resolution and --needed-pixels exclude each other, because smaller pictures are made "
+        "of whole LF images: leave one of them out");
+  options.by_resolution = a.by_resolution;
+  lf::CodecWords codec = a.codec;
+  if (a.by_resolution && codec.profile != "recorded") codec.reencode = true;
+  LF_RETURN_IF_ERROR(lf::SetCodec(codec, &options));
   if (!a.shard_size.empty()) {
     LF_ASSIGN_OR_RETURN(options.shard_bytes, lf::ParseByteSize(a.shard_size, "--shard-size"));
   }
@@ -218,23 +251,32 @@ std::string NextOf(const Arguments& a, std::span<const lf::Package> packages) {
   return lf::NextRender(lf::ShellPackages(a.inputs), options);
 }
 
-// Returns the LF images to compress.
-//   next  set to NextOf()
-lf::Result<lf::CompressSource> OpenSource(const Arguments& a, std::string* next) {
+struct Input {
+  lf::CompressSource source;
+  std::optional<lf::ImageUse> use = {};  // set if --quality-by-use is given
+  std::string next;                      // NextOf()
+};
+
+// Opens the LF images to compress.
+lf::Result<Input> OpenInput(const Arguments& a, const std::atomic<bool>& interrupted,
+                            lf::ThreadPool& pool) {
   if (!HasPackages(a)) {
     if (a.inputs.size() > 1)
       return lf::UsageError(
           "a light field and other inputs are given: expected one LIGHTFIELD, or only packages "
           "(files that end in .lfp)");
-    if (a.needed_pixels || !a.light_field.path.empty())
+    if (a.needed_pixels || a.codec.quality_by_use || !a.light_field.path.empty())
       return lf::UsageError(
-          "--needed-pixels and --lightfield can only be used with packages (files that end in "
-          ".lfp): leave them out");
+          "--needed-pixels, --quality-by-use and --lightfield can only be used with packages "
+          "(files "
+          "that end in .lfp): leave them out");
     lf::LightFieldArgument argument = a.light_field;
     argument.path = a.inputs.front();
     LF_ASSIGN_OR_RETURN(lf::LightField light_field, argument.Open());
-    *next = NextOf(a, {});
-    return lf::SourceOfAll(std::move(light_field));
+    Input input;
+    LF_ASSIGN_OR_RETURN(input.source, lf::SourceOfAll(std::move(light_field)));
+    input.next = NextOf(a, {});
+    return input;
   }
   LF_RETURN_IF_ERROR(a.light_field.CheckWithPackages());
   std::optional<lf::LightField> light_field;
@@ -248,33 +290,40 @@ lf::Result<lf::CompressSource> OpenSource(const Arguments& a, std::string* next)
     LF_ASSIGN_OR_RETURN(lf::Package package, lf::OpenPackage(path, place));
     packages.push_back(std::move(package));
   }
-  *next = NextOf(a, packages);
   if (!light_field) {
     LF_ASSIGN_OR_RETURN(light_field, OpenSourceOf(packages.front(), a.inputs.front()));
   }
-  return lf::SourceOfPackages(*std::move(light_field), packages, a.needed_pixels);
+  Input input;
+  LF_ASSIGN_OR_RETURN(input.source,
+                      lf::SourceOfPackages(*std::move(light_field), packages, a.needed_pixels));
+  if (a.codec.quality_by_use) {
+    LF_ASSIGN_OR_RETURN(input.use, lf::UseBy(packages, pool, &interrupted));
+  }
+  input.next = NextOf(a, packages);
+  return input;
 }
 
 lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   const std::atomic<bool>& interrupted = lf::CatchInterrupts();
   LF_ASSIGN_OR_RETURN(const lf::MissingLimit limit, a.allow_missing.Limit());
   LF_ASSIGN_OR_RETURN(lf::CompressOptions options, MakeOptions(a, common));
-  std::string next;
-  LF_ASSIGN_OR_RETURN(const lf::CompressSource source, OpenSource(a, &next));
-  options.interrupted = &interrupted;
   lf::ThreadPool pool(common.threads);
+  LF_ASSIGN_OR_RETURN(const Input input, OpenInput(a, interrupted, pool));
+  if (input.use) options.use = &*input.use;
+  options.interrupted = &interrupted;
   lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), "LF images");
-  LF_ASSIGN_OR_RETURN(const lf::CompressReport report,
-                      lf::Compress(source, options, pool, [&](const lf::CompressProgress& now) {
-                        meter.Update(now.done, now.total, lf::ProgressDetail(now));
-                      }));
+  LF_ASSIGN_OR_RETURN(
+      const lf::CompressReport report,
+      lf::Compress(input.source, options, pool, [&](const lf::CompressProgress& now) {
+        meter.Update(now.done, now.total, lf::ProgressDetail(now));
+      }));
   const lf::Result<void> end = lf::EndWithMissing(
       {report.skipped.size(), report.image_count, lf::MissingText(report, options),
        "once they are mended, encode all LF images again with --overwrite"},
       limit);
-  LF_RETURN_IF_ERROR(lf::PrintReport(common.json
-                                         ? lf::CompressJson(report, options)
-                                         : lf::CompressText(report, options, end ? next : "")));
+  LF_RETURN_IF_ERROR(
+      lf::PrintReport(common.json ? lf::CompressJson(report, options)
+                                  : lf::CompressText(report, options, end ? input.next : "")));
   return end;
 }
 

@@ -28,6 +28,7 @@
 #include "lf/import/formats/picture_grid.h"
 #include "lf/import/report/exposure_steps.h"
 #include "lf/import/report/import_report.h"
+#include "lf/light_field/model/reduction.h"
 #include "lf/storage/load/measure_footprint.h"
 #include "lf/storage/load/open_store.h"
 #include "lf/storage/packed/packed_store_file.h"
@@ -334,7 +335,7 @@ lf::Result<lf::ImageFaults> CheckFiles(const Arguments& a, const lf::CommonOptio
   check.check = a.check == "pixels" ? lf::ImageCheck::kPixels : lf::ImageCheck::kHeaders;
   check.interrupted = &interrupted;
   check.progress = [&](size_t done, size_t total) { meter.Update(done, total, "checking"); };
-  return lf::CheckImages(light_field, check, pool);
+  return lf::CheckImages(lf::RecordedLightField(light_field), check, pool);
 }
 
 void WarnOfMasks(const Arguments& a, const lf::LightField& light_field, lf::ImportReport* report) {
@@ -399,6 +400,9 @@ lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
   report.shown_times = light_field.slice_times;
   if (!a.output.empty()) LF_RETURN_IF_ERROR(lf::CheckNames(a.output, light_field));
   lf::ThreadPool pool(common.threads);
+  if (lf::HoldsPackedStore(light_field)) {
+    LF_ASSIGN_OR_RETURN(report.films, lf::ReadStoreFilms(light_field.folder));
+  }
   if (a.check != "none") {
     LF_ASSIGN_OR_RETURN(report.faults, CheckFiles(a, common, light_field, interrupted, pool));
     if (excludes_missing) {

@@ -65,6 +65,7 @@ struct Arguments {
 
 void AddInput(CLI::App& app, Arguments& a) {
   a.light_field.AddTo(app);
+  a.light_field.AddReduceTo(app);
   lf::OptionGroup input(app, lf::kInputGroup);
   input
       .Add("PATH", a.path,

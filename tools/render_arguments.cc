@@ -47,6 +47,7 @@ void AddInput(CLI::App& app, RenderArguments& a) {
            "packed store that contains their LF images.")
       ->check(NotEmpty());
   a.light_field.AddOptionsTo(app);
+  a.light_field.AddReduceTo(app);
   a.allow_missing.AddTo(
       app, "the LF images that the largest pass reads (with packages: that each package reads)");
 }

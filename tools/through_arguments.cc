@@ -61,6 +61,7 @@ void AddRunning(CLI::App& app, ThroughArguments& a) {
 void ThroughArguments::AddTo(CLI::App& app) {
   ThroughArguments& a = *this;
   a.light_field.AddTo(app);
+  a.light_field.AddReduceTo(app);
   OptionGroup input(app, kInputGroup);
   input
       .Add("PATH", a.paths,

@@ -13,25 +13,12 @@
 #include <vector>
 
 #include "lf/core/files_nearby.h"
+#include "lf/core/open_file.h"
 #include "lf/core/temporary_file.h"
 
 namespace lf {
 namespace fs = std::filesystem;
 namespace {
-
-class FileDescriptor {
- public:
-  explicit FileDescriptor(int fd) : fd_(fd) {}
-  ~FileDescriptor() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  FileDescriptor(const FileDescriptor&) = delete;
-  FileDescriptor& operator=(const FileDescriptor&) = delete;
-  int get() const { return fd_; }
-
- private:
-  int fd_;
-};
 
 std::string SystemReason() { return std::strerror(errno); }
 
@@ -91,13 +78,13 @@ ErrorKind KindOfReadFailure(const std::exception& thrown) {
 }
 
 void AnnounceRead(const fs::path& path) {
-  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  const OpenFile file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.get() >= 0) ::posix_fadvise(file.get(), 0, 0, POSIX_FADV_WILLNEED);
 }
 
 Result<std::string> ReadFile(const fs::path& path, size_t limit_bytes) {
   // O_NONBLOCK, because opening a named pipe would wait for its writer.
-  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  const OpenFile file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   struct stat status {};
   if (file.get() < 0 || ::fstat(file.get(), &status) != 0) {
     const int code = errno;
@@ -129,8 +116,7 @@ Result<std::string> ReadFile(const fs::path& path, size_t limit_bytes) {
 
 Result<void> WriteFileAtomically(const fs::path& path, std::string_view bytes) {
   return WriteAtomically(path, [bytes](const fs::path& temporary) -> Result<void> {
-    const FileDescriptor file(
-        ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+    const OpenFile file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
     if (file.get() < 0)
       return OutputError(
           fmt::format("{}: cannot be created: {}", temporary.string(), SystemReason()));
@@ -165,7 +151,7 @@ Result<void> WriteAtomically(const fs::path& path,
 }
 
 Result<void> FlushToDisk(const fs::path& path) {
-  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  const OpenFile file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.get() < 0 || ::fsync(file.get()) != 0)
     return OutputError(
         fmt::format("{}: cannot be flushed to the disk: {}", path.string(), SystemReason()));

@@ -25,6 +25,7 @@
 #include "lf/densify/watched_loop.h"
 #include "lf/densify/working_images.h"
 #include "lf/light_field/model/keep_images.h"
+#include "lf/light_field/model/reduction.h"
 #include "lf/storage/load/measure_footprint.h"
 #include "lf/storage/load/open_store.h"
 #include "lf/storage/packed/packed_store_writer.h"
@@ -188,6 +189,7 @@ Result<void> Densifier::CheckTarget() const {
 
 // Finds the numbers that LF images have in the whole light field.
 Result<void> Densifier::FindWhole() {
+  LF_RETURN_IF_ERROR(CheckNotReduced(light_field_, "a densified store"));
   whole_ids_.resize(light_field_.size());
   std::iota(whole_ids_.begin(), whole_ids_.end(), 0U);
   if (!HoldsPackedStore(light_field_)) return {};

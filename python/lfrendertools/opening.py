@@ -20,7 +20,7 @@ def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[
          plane_distance: Optional[float] = None, flip_x: bool = False, flip_y: bool = False,
          grid: Optional[Tuple[int, int]] = None, serpentine: bool = False, layout: str = "",
          time: Union[None, float, Sequence[float]] = None, recorded_fps: Optional[float] = None,
-         frame_cache: Optional[FilePath] = None) -> LightField:
+         frame_cache: Optional[FilePath] = None, reduce: int = 1) -> LightField:
     """Open a light field of any supported form.
 
     Parameters
@@ -57,6 +57,8 @@ def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[
         For light field videos in folders of frames: frames per second; 30 if it is not given.
     frame_cache : path, optional
         For light field videos: folder into which frames are decoded, in place of the one beside the light field.
+    reduce : int, optional
+        Load LF images at 1/reduce of their width and height: 1, 2, 4 or 8.
 
     Returns
     -------
@@ -100,7 +102,8 @@ def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[
         (arguments.flag("flip_x", flip_x), arguments.flag("flip_y", flip_y), arguments.flag("serpentine", serpentine)),
         [arguments.real("time", value) for value in times],
         0.0 if recorded_fps is None else arguments.positive("recorded_fps", recorded_fps),
-        b"" if frame_cache is None else os.fsencode(_absolute("frame_cache", frame_cache)))
+        b"" if frame_cache is None else os.fsencode(_absolute("frame_cache", frame_cache)),
+        arguments.whole("reduce", reduce))
     return LightField(core, source)
 
 

@@ -50,11 +50,12 @@ std::shared_ptr<OpenedField> Open(const std::string& path, double focal_px, doub
                                   const std::optional<std::array<int, 2>>& grid,
                                   const std::string& layout, const std::array<bool, 3>& flips,
                                   const std::vector<double>& times, double recorded_fps,
-                                  const std::string& frame_cache) {
+                                  const std::string& frame_cache, int reduce) {
   LightFieldWords words;
   if (times.size() == 1) words.time = times[0];
   if (recorded_fps > 0) words.recorded_fps = recorded_fps;
   words.frame_cache = frame_cache;
+  words.reduce = reduce;
   words.focal_px = focal_px;
   words.fov_deg = fov_deg;
   words.images = images;

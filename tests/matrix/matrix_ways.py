@@ -36,8 +36,8 @@ RUNS = {  # options with which a run changes the content of the frames
     "round-robin": ["--order", "round-robin", "--max-images", MOST_IMAGES],
     "area": ["--order", "area", "--max-images", MOST_IMAGES],
 }
-INPUTS = ("folder", "store", "lossy store", "recorded store", "store of packages", "lossy store of packages",
-          "needed pixels", "lossy needed pixels", "densified store")
+INPUTS = ("folder", "store", "lossy store", "recorded store", "store by resolution", "coarser store",
+          "store of packages", "lossy store of packages", "needed pixels", "lossy needed pixels", "densified store")
 CUTS = ("whole", "packages", "moved packages", "shards", "shards of packages", "lfsubmit")
 FIELDS = ("rgb", "mosaic", "alpha", "opacity", "falloff", "shutter", "depths", "heights", "flawed", "flawed mosaic")
 VALUES = {"field": FIELDS, "input": INPUTS, "cut": CUTS, "mode": tuple(MODES), "run": tuple(RUNS)}
@@ -120,7 +120,9 @@ class Matrix(World):
         source, cut = cell.input, "whole"
         run_name = {"killed": "once", "interrupted": "once", "small": "once", "finish": "once",
                     "noise killed": "noise"}.get(cell.run, cell.run)
-        if "lossy" not in source:
+        if source == "coarser store":
+            pass
+        elif "lossy" not in source:
             source = packaged_input(source)
         elif source != "lossy needed pixels":
             source = "lossy store"

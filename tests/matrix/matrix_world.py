@@ -300,13 +300,18 @@ class World:
         else:
             words = [self.folder_of(field)]
         profile = "default" if "lossy" in source else "recorded" if "recorded" in source else "lossless"
+        if source in ("store by resolution", "coarser store"):
+            words.append("--by-resolution")
         self.make("lfcompressor", *words, "-o", store, "--profile", profile)
+        if source == "coarser store":
+            # The store of masked LF images alone has one file, which has all their pixels.
+            store.with_name("a-r3.lfs").unlink(missing_ok=True)
         return store
 
 
 def packaged_input(source):
     """Returns the input from which packages are made that take their LF images from another one."""
-    return source if source == "densified store" else "folder"
+    return source if source in ("densified store", "coarser store") else "folder"
 
 
 def is_of_packages(source):

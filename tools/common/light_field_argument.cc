@@ -103,6 +103,18 @@ void LightFieldArgument::AddOptionsTo(CLI::App& app) {
   AddUnusualOptions(app, *this);
 }
 
+void LightFieldArgument::AddReduceTo(CLI::App& app) {
+  OptionGroup input(app, kInputGroup);
+  input
+      .Add(
+          "--reduce N", reduce,
+          "Load LF images at 1/N of their size (1)\n"
+          "N is 1, 2, 4 or 8: a pixel is the mean of N x N recorded pixels. For quick films, whose "
+          "frames are less sharp. JPEG files and packed stores then take less time to load, and of "
+          "a store by resolution (lfcompressor --by-resolution) fewer bytes are read.")
+      ->check(CLI::IsMember({1, 2, 4, 8}));
+}
+
 Result<void> LightFieldArgument::CheckWithPackages() const {
   if (image_alpha != "auto" || !background.empty())
     return UsageError(

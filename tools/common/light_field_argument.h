@@ -19,6 +19,8 @@ struct LightFieldArgument : LightFieldWords {
   void AddTo(CLI::App& app);
   // Adds only the options, without the positional argument.
   void AddOptionsTo(CLI::App& app);
+  // Adds the option that loads smaller LF images, for programs that need no whole ones.
+  void AddReduceTo(CLI::App& app);
   Result<LightField> Open() const;
   // Opens the light field for the frames of a path. Of a light field video, without --time, these
   // are the slices that the frames show (RecordingTimesOf() of import/paths/recording_times.h).

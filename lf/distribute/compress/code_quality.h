@@ -23,6 +23,8 @@ struct CodeError {
     count += other.count;
     return *this;
   }
+  // Returns the mean of the squares; 0 if there are no values.
+  double Mean() const { return count == 0 ? 0 : squared / static_cast<double>(count); }
   // Returns the PSNR of all values together; infinite if there is no difference.
   double PsnrDb() const;
 };

@@ -29,6 +29,11 @@ Result<void> SetCodec(const CodecWords& words, CompressOptions* options) {
         "{{threshold}} and {{target_psnr}} cannot be used with {{profile {}}}, which drops no "
         "details: leave them out",
         words.profile));
+  if (words.quality_by_use && words.profile != "default")
+    return UsageError(fmt::format(
+        "{{quality_by_use}} cannot be used with {{profile {}}}, which has no threshold for each LF "
+        "image: leave one of them out",
+        words.profile));
   if (is_recorded && words.reencode)
     return UsageError(
         "{reencode} cannot be used with {profile recorded}, which keeps image files: leave one of "

@@ -17,6 +17,7 @@ struct CodecWords {
   double threshold = -1;   // below 0: the default of the profile
   double target_psnr = 0;  // in dB; 0: the threshold is not searched for
   bool reencode = false;   // true: no image file is kept
+  bool quality_by_use = false;
 };
 
 // Sets options->codec, options->files and options->target_psnr_db. kUsage: words that do not exist,

@@ -9,10 +9,12 @@
 #include <mutex>
 #include <utility>
 
+#include "lf/core/check.h"
 #include "lf/core/log.h"
 #include "lf/distribute/compress/find_threshold.h"
 #include "lf/distribute/compress/image_coder.h"
 #include "lf/distribute/compress/verify_store.h"
+#include "lf/selection/spread_order.h"
 #include "lf/storage/load/recorded_image.h"
 #include "lf/storage/packed/packed_store_file.h"
 #include "lf/storage/packed/packed_store_writer.h"
@@ -25,14 +27,25 @@ double Now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+// Returns the number of files of a store by resolution: one for each resolution that LF images can
+// be loaded with, up to an eighth of their size.
+size_t PartCount(const CompressOptions& options, const CodecSettings& settings) {
+  constexpr int kMostHalvings = 3;
+  if (!options.by_resolution) return 0;
+  if (settings.profile == CodecProfile::kThesis || options.files == KeepFiles::kAll) return 1;
+  return 1 + static_cast<size_t>(std::min(settings.levels, kMostHalvings));
+}
+
 PackedStorePlan PlanOf(const CompressSource& source, const CompressOptions& options,
-                       const CodecSettings& settings) {
+                       const CodecSettings& settings, const ThresholdFactors& factors) {
   PackedStorePlan plan;
   plan.whole = source.whole;
   plan.rects = source.rects;
-  plan.codec = NameOf(settings, options.files);
+  plan.codec = NameOf(settings, options.files, factors);
+  if (options.use != nullptr) plan.films = options.use->films;
   plan.display_levels = ImageCoder(source.light_field.encoding, settings).display_levels();
   plan.shard_bytes = options.shard_bytes;
+  plan.part_count = PartCount(options, settings);
   plan.source = options.source_name;
   plan.version = options.version;
   return plan;
@@ -67,7 +80,12 @@ class Compressor {
         options_(options),
         pool_(pool),
         progress_(progress),
-        ids_(source.CompressedIds()) {}
+        ids_(source.CompressedIds()) {
+    if (options.use != nullptr) {
+      factors_ = ThresholdFactors(*options.use, source.rects);
+      errors_.resize(source.rects.size());
+    }
+  }
 
   Result<CompressReport> Run();
 
@@ -76,9 +94,10 @@ class Compressor {
   Result<void> FindSkipped();
   Result<void> ChooseThreshold();
   Result<void> Write(FileLock lock);
+  std::vector<LfImageId> Ordered() const;
   Result<void> CheckFiles(const PackedStoreWriter& writer);
-  void Count(const RecordedImage& image, const CodedImage& coded, const CodeError& lost,
-             const std::string& name);
+  void Count(LfImageId id, const RecordedImage& image, const CodedImage& coded,
+             const CodeError& lost);
   void AddOne(PackedStoreWriter* writer, LfImageId id);
   VerifyOptions Verification() const;
   Result<void> Verify();
@@ -91,11 +110,13 @@ class Compressor {
   const std::function<void(const CompressProgress&)>& progress_;
   const std::vector<LfImageId> ids_;  // LF images that are compressed
   CodecSettings settings_;
+  ThresholdFactors factors_;
   std::optional<ImageCoder> coder_;
 
   std::mutex mutex_;  // guards all members below
   CompressReport report_;
   CompressProgress now_;
+  std::vector<double> errors_;  // [id]: mean squared error, 0 until encoded; empty without `use`
   std::optional<Error> error_;
   bool ended_ = false;  // true after an error or an interruption
 };
@@ -123,7 +144,9 @@ void Compressor::AddOne(PackedStoreWriter* writer, LfImageId id) {
   if (!image) {
     error = image.error();
   } else {
-    if (Result<CodedImage> made = coder_->CodeOrFile(light_field, id, *image); made) {
+    if (Result<CodedImage> made =
+            coder_->CodeOrFile(light_field, id, *image, factors_.Of(id.value));
+        made) {
       coded = *std::move(made);
       lost = coder_->ErrorOf(*image, *coded);
       if (const Result<void> added = writer->Add(id, *coded); !added) error = added.error();
@@ -145,13 +168,14 @@ void Compressor::AddOne(PackedStoreWriter* writer, LfImageId id) {
       error_ = *error;
     }
   } else {
-    Count(*image, *coded, lost, name);
+    Count(id, *image, *coded, lost);
   }
   if (progress_) progress_(now_);
 }
 
-void Compressor::Count(const RecordedImage& image, const CodedImage& coded, const CodeError& lost,
-                       const std::string& name) {
+void Compressor::Count(LfImageId id, const RecordedImage& image, const CodedImage& coded,
+                       const CodeError& lost) {
+  const std::string& name = source_.light_field.image_names[id.value];
   const uint64_t pixel_bytes =
       std::visit([](const auto& pixels) { return pixels.size_bytes(); }, image.pixels);
   ++report_.coded_count;
@@ -162,6 +186,7 @@ void Compressor::Count(const RecordedImage& image, const CodedImage& coded, cons
   report_.pixel_bytes += pixel_bytes;
   report_.code_bytes += coded.code.size() + coded.mask.size();
   report_.error += lost;
+  if (!errors_.empty()) errors_[id.value] = lost.Mean();
   if (report_.worst_name.empty() || lost.PsnrDb() < report_.worst_psnr_db ||
       (lost.PsnrDb() == report_.worst_psnr_db && name < report_.worst_name)) {
     report_.worst_psnr_db = lost.PsnrDb();
@@ -169,6 +194,15 @@ void Compressor::Count(const RecordedImage& image, const CodedImage& coded, cons
   }
   now_.pixel_bytes = report_.pixel_bytes;
   now_.code_bytes = report_.code_bytes;
+}
+
+// Returns the LF images to compress in the order in which they are added to the store.
+std::vector<LfImageId> Compressor::Ordered() const {
+  if (!options_.by_resolution) return ids_;
+  std::vector<LfImageId> ordered;
+  for (const uint32_t id : SpreadOrder(source_.light_field, /*seed=*/0))
+    if (!source_.rects[id].empty()) ordered.push_back({id});
+  return ordered;
 }
 
 // Checks that the file of each LF image in the unfinished store still has the size that it had when
@@ -193,19 +227,19 @@ Result<void> Compressor::CheckFiles(const PackedStoreWriter& writer) {
 
 Result<void> Compressor::Write(FileLock lock) {
   coder_.emplace(source_.light_field.encoding, settings_, options_.files);
-  LF_ASSIGN_OR_RETURN(
-      PackedStoreWriter writer,
-      OpenWriter(source_, options_, PlanOf(source_, options_, settings_), std::move(lock)));
+  LF_ASSIGN_OR_RETURN(PackedStoreWriter writer,
+                      OpenWriter(source_, options_, PlanOf(source_, options_, settings_, factors_),
+                                 std::move(lock)));
   LF_RETURN_IF_ERROR(CheckFiles(writer));
   std::vector<LfImageId> ids;
-  for (const LfImageId id : ids_)
+  for (const LfImageId id : Ordered())
     if (!writer.Has(id)) ids.push_back(id);
   report_.resumed_count = ids_.size() - ids.size();
   now_.total = ids_.size();
   now_.done = report_.resumed_count;
   LogDebug("{}: {} LF images to be encoded, {} are encoded; codec {}; {} threads",
            options_.store.string(), ids.size(), report_.resumed_count,
-           NameOf(settings_, options_.files), pool_.thread_count());
+           NameOf(settings_, options_.files, factors_), pool_.thread_count());
   pool_.ForEach(ids.size(), [&](size_t i) { AddOne(&writer, ids[i]); });
   std::sort(report_.skipped.begin(), report_.skipped.end(),
             [](const auto& a, const auto& b) { return a.name < b.name; });
@@ -228,9 +262,13 @@ Result<void> Compressor::Write(FileLock lock) {
 }
 
 VerifyOptions Compressor::Verification() const {
-  return {options_.store,   settings_,
-          options_.files,   PlanOf(source_, options_, settings_),
-          !options_.resume, [this] { return IsInterrupted(); }};
+  return {options_.store,
+          settings_,
+          factors_,
+          options_.files,
+          PlanOf(source_, options_, settings_, factors_),
+          !options_.resume,
+          [this] { return IsInterrupted(); }};
 }
 
 Result<void> Compressor::Verify() {
@@ -283,11 +321,12 @@ Result<void> Compressor::CheckTarget() {
 Result<void> Compressor::ChooseThreshold() {
   if (options_.target_psnr_db) {
     LF_ASSIGN_OR_RETURN(settings_.threshold,
-                        FindThreshold(source_, settings_, *options_.target_psnr_db, pool_,
-                                      [this] { return IsInterrupted(); }));
+                        FindThreshold(source_, settings_, *options_.target_psnr_db, options_.use,
+                                      pool_, [this] { return IsInterrupted(); }));
     LogDebug("{{target_psnr {}}}: threshold {}", *options_.target_psnr_db, settings_.threshold);
   }
   report_.threshold = settings_.threshold;
+  report_.factors = factors_;
   return {};
 }
 
@@ -295,6 +334,7 @@ Result<CompressReport> Compressor::Run() {
   const double begin_s = Now();
   settings_ = options_.codec;
   LF_RETURN_IF_ERROR(CheckSettings(settings_));
+  LF_CHECK(!options_.by_resolution || options_.shard_bytes == 0);
   report_.image_count = ids_.size();
   report_.left_out_count = source_.light_field.size() - ids_.size();
   LF_RETURN_IF_ERROR(CheckTarget());
@@ -312,6 +352,8 @@ Result<CompressReport> Compressor::Run() {
     LF_RETURN_IF_ERROR(Write(std::move(*held.lock)));
   }
   if (options_.verify) LF_RETURN_IF_ERROR(Verify());
+  if (options_.use != nullptr && report_.coded_count + report_.skipped.size() == ids_.size())
+    report_.frames = PredictFrames(*options_.use, errors_);
   report_.store_bytes = StoreBytes(options_.store);
   report_.total_s = Now() - begin_s;
   return std::move(report_);
@@ -319,7 +361,8 @@ Result<CompressReport> Compressor::Run() {
 
 }  // namespace
 
-std::string NameOf(const CodecSettings& settings, KeepFiles files) {
+std::string NameOf(const CodecSettings& settings, KeepFiles files,
+                   const ThresholdFactors& factors) {
   const char* const kept = files == KeepFiles::kSmaller ? ", or the image file if it is smaller"
                            : files == KeepFiles::kAll   ? ", or the image file"
                                                         : "";
@@ -328,8 +371,8 @@ std::string NameOf(const CodecSettings& settings, KeepFiles files) {
       return fmt::format("thesis, levels {}, threshold {}, quantizer {}", settings.levels,
                          settings.threshold, settings.quantizer);
     case CodecProfile::kDefault:
-      return fmt::format("default, levels {}, threshold {}{}", settings.levels, settings.threshold,
-                         kept);
+      return fmt::format("default, levels {}, threshold {}{}{}", settings.levels,
+                         settings.threshold, factors.Words(), kept);
     case CodecProfile::kLossless:
       break;
   }

@@ -15,6 +15,7 @@
 #include "lf/core/result.h"
 #include "lf/distribute/compress/code_quality.h"
 #include "lf/distribute/compress/compress_source.h"
+#include "lf/distribute/compress/image_use.h"
 #include "lf/distribute/compress/keep_files.h"
 #include "lf/pixels/codec/lf_image_codec.h"
 
@@ -25,10 +26,18 @@ struct CompressOptions {
   // The threshold is in grey steps (GreyStep() of code_quality.h) of the images' values.
   CodecSettings codec;
   KeepFiles files = KeepFiles::kSmaller;  // must be kNone for CodecProfile::kThesis
+  // If not null, each LF image has a threshold of its own: codec's threshold times its factor of
+  // ThresholdFactors. The profile must be kDefault.
+  const ImageUse* use = nullptr;
   // If set, replaces codec's threshold by the largest one at which a sample of the LF images has at
-  // least this PSNR.
+  // least this PSNR. If `use` is not null, it is that of the frames: of all frames together, as
+  // PredictFrames() predicts it.
   std::optional<double> target_psnr_db;
   uint64_t shard_bytes = 0;  // approximate size of each file of encoded images; 0: one file
+  // True: makes a store by resolution (packed_store_writer.h), in whose files LF images are in
+  // spread order (selection/spread_order.h). Not together with shard_bytes. All pixels of LF images
+  // must be compressed, because parts of them are not reduced.
+  bool by_resolution = false;
   // True: resumes an unfinished store, or begins a new one if there is none. If the store is
   // complete, it must match the options, and is kept.
   bool resume = false;
@@ -60,6 +69,7 @@ struct CompressReport {
   size_t resumed_count = 0;   // LF images that the unfinished store already had
   bool was_there = false;     // true if the store was complete, so that nothing was written
   double threshold = 0;       // threshold of the encoder, in grey steps
+  ThresholdFactors factors;   // its factors
   size_t rounded_count = 0;   // LF images with floats that half floats cannot represent exactly
   struct Skipped {
     std::string name;
@@ -76,6 +86,10 @@ struct CompressReport {
   CodeError error;
   double worst_psnr_db = 0;  // lowest PSNR of an LF image; infinite if all are exact
   std::string worst_name;
+  // Predicted errors of the frames of CompressOptions::use; unset without it, or if this call did
+  // not encode all LF images, because the errors of the others are not known. An LF image that is
+  // kept as its file, or could not be read, counts as exact.
+  std::optional<FrameErrors> frames;
   double encode_cpu_s = 0;
   double total_s = 0;
 
@@ -86,7 +100,9 @@ struct CompressReport {
 
 // Returns the settings in words, as a store records them. A store is resumed or verified only with
 // equal words. Words of settings that lose nothing begin with kLosslessCodec.
-std::string NameOf(const CodecSettings& settings, KeepFiles files);
+//   factors  factors of the threshold of settings
+std::string NameOf(const CodecSettings& settings, KeepFiles files,
+                   const ThresholdFactors& factors = {});
 
 // Compresses the LF images of `source` into options.store. kUsage: wrong settings, the store exists
 // and no option says what to do with it, its name belongs to another file, or no threshold reaches

@@ -22,6 +22,9 @@ std::string Decibels(double db) {
   return std::isinf(db) ? std::string("exact") : fmt::format("{:.1f} dB", db);
 }
 
+// Returns the PSNR that belongs to a mean squared error of a frame.
+double PsnrOf(double error) { return CodeError{error, 1}.PsnrDb(); }
+
 double MegabytesPerSecond(uint64_t bytes, double seconds) {
   return seconds > 0 ? static_cast<double>(bytes) / 1e6 / seconds : 0;
 }
@@ -42,7 +45,8 @@ std::string CompressText(const CompressReport& report, const CompressOptions& op
       "{}: {} LF images{}, {}B in all; {}\n", options.store.string(),
       report.image_count - report.skipped.size(),
       report.skipped.empty() ? std::string() : fmt::format(" of {}", report.image_count),
-      ShortNumber(static_cast<double>(report.store_bytes)), NameOf(settings, options.files));
+      ShortNumber(static_cast<double>(report.store_bytes)),
+      NameOf(settings, options.files, report.factors));
   if (report.left_out_count > 0)
     text += fmt::format(
         "{} LF images are left out, because the packages do not need them: a film that needs them "
@@ -69,6 +73,10 @@ std::string CompressText(const CompressReport& report, const CompressOptions& op
     text += fmt::format("quality   {}", Decibels(report.error.PsnrDb()));
     if (report.error.squared > 0)
       text += fmt::format("; worst {} ({})", Decibels(report.worst_psnr_db), report.worst_name);
+    if (report.frames)
+      text += fmt::format("\nframes    {} predicted; worst {} (frame {})",
+                          Decibels(PsnrOf(report.frames->mean)),
+                          Decibels(PsnrOf(report.frames->worst)), report.frames->worst_frame.value);
     text += fmt::format("\nspeed     {:.0f} MB/s of pixels, {:.0f} MB/s for each CPU second; {}\n",
                         MegabytesPerSecond(report.pixel_bytes, report.total_s),
                         MegabytesPerSecond(report.pixel_bytes, report.encode_cpu_s),
@@ -104,7 +112,7 @@ std::string CompressJson(const CompressReport& report, const CompressOptions& op
   settings.threshold = report.threshold;
   Json json;
   json["store"] = options.store.string();
-  json["codec"] = NameOf(settings, options.files);
+  json["codec"] = NameOf(settings, options.files, report.factors);
   json["threshold"] = report.threshold;
   json["lf_images"] = report.image_count;
   json["lf_images_left_out"] = report.left_out_count;
@@ -122,6 +130,10 @@ std::string CompressJson(const CompressReport& report, const CompressOptions& op
     json["worst_psnr_db"] = decibels(report.worst_psnr_db);
     json["worst"] = report.worst_name;
   }
+  if (report.frames)
+    json["frames"] = {{"psnr_db", decibels(PsnrOf(report.frames->mean))},
+                      {"worst_psnr_db", decibels(PsnrOf(report.frames->worst))},
+                      {"worst", report.frames->worst_frame.value}};
   json["encode_cpu_s"] = report.encode_cpu_s;
   json["total_s"] = report.total_s;
   json["rounded_to_half"] = report.rounded_count;

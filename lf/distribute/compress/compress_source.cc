@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include "lf/light_field/model/reduction.h"
 #include "lf/storage/load/measure_footprint.h"
 #include "lf/storage/load/open_store.h"
 #include "lf/storage/packed/packed_store_file.h"
@@ -30,6 +31,7 @@ Result<void> CheckNotPacked(const LightField& light_field) {
 }
 
 Result<CompressSource> SourceOf(LightField light_field, std::vector<PixelRect> rects) {
+  LF_RETURN_IF_ERROR(CheckNotReduced(light_field, "a packed store"));
   CompressSource source;
   source.whole = IdentityOf(light_field);
   source.rects = std::move(rects);

@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "lf/distribute/compress/image_coder.h"
@@ -20,10 +23,52 @@ constexpr size_t kLookedAt = 12;  // largest number of LF images in the sample
 constexpr int kSteps = 160;
 double ThresholdOf(int step) { return std::round(0.05 * std::pow(1.05, step) * 1e4) / 1e4; }
 
+// Predicts the error of frames at any threshold, from errors at a few thresholds.
+class FrameSample {
+ public:
+  //   error_at  returns the mean squared error of the sample of LF images at a threshold
+  FrameSample(const ImageUse& use, std::span<const PixelRect> rects,
+              std::function<double(double)> error_at)
+      : use_(use),
+        factors_(use, rects),
+        image_count_(rects.size()),
+        error_at_(std::move(error_at)) {}
+
+  double ErrorAt(double threshold) {
+    std::vector<double> errors(image_count_);
+    for (uint32_t i = 0; i < errors.size(); ++i)
+      errors[i] = Interpolated(threshold * factors_.Of(i));
+    return PredictFrames(use_, errors).mean;
+  }
+
+ private:
+  // Interpolates the logarithm of the error linearly in the logarithm of the threshold.
+  double Interpolated(double threshold) {
+    const double at = 2 * std::log2(threshold);
+    const int below = static_cast<int>(std::floor(at));
+    const double low = AtNode(below), high = AtNode(below + 1);
+    if (!(low > 0 && high > 0)) return std::max(low, high);
+    return low * std::pow(high / low, at - below);
+  }
+
+  // Returns the error at the threshold 2^(node / 2).
+  double AtNode(int node) {
+    const auto known = known_.find(node);
+    if (known != known_.end()) return known->second;
+    return known_[node] = error_at_(std::exp2(0.5 * node));
+  }
+
+  const ImageUse& use_;
+  const ThresholdFactors factors_;
+  const size_t image_count_;
+  const std::function<double(double)> error_at_;
+  std::map<int, double> known_;  // AtNode() of a node
+};
+
 }  // namespace
 
 Result<double> FindThreshold(const CompressSource& source, const CodecSettings& settings,
-                             double psnr_db, ThreadPool& pool,
+                             double psnr_db, const ImageUse* use, ThreadPool& pool,
                              const std::function<bool()>& is_interrupted) {
   const Error interrupted = {ErrorKind::kInterrupted,
                              "interrupted during the search for the threshold of {target_psnr}"};
@@ -41,7 +86,7 @@ Result<double> FindThreshold(const CompressSource& source, const CodecSettings& 
     const PixelRect rect = RectToRecord(light_field, id, source.rects[id.value]);
     images[i] = ReadRecordedImage(light_field, id, rect);
   });
-  const auto psnr_at = [&](double threshold) {
+  const auto error_at = [&](double threshold) {
     CodecSettings of_threshold = settings;
     of_threshold.threshold = threshold;
     const ImageCoder coder(light_field.encoding, of_threshold);
@@ -52,7 +97,15 @@ Result<double> FindThreshold(const CompressSource& source, const CodecSettings& 
     });
     CodeError together;
     for (const CodeError& error : errors) together += error;
-    return together.PsnrDb();
+    return together;
+  };
+  std::optional<FrameSample> frames;
+  if (use != nullptr)
+    frames.emplace(*use, source.rects,
+                   [&](double threshold) { return error_at(threshold).Mean(); });
+  const auto psnr_at = [&](double threshold) {
+    if (!frames) return error_at(threshold).PsnrDb();
+    return CodeError{frames->ErrorAt(threshold), 1}.PsnrDb();
   };
   if (is_interrupted()) return interrupted;
   if (std::none_of(images.begin(), images.end(), [](const auto& image) { return bool(image); }))

@@ -34,15 +34,16 @@ Image<uint16_t> ImageCoder::OnCurve(const CodecPixels& pixels) const {
 }
 
 Result<CodedImage> ImageCoder::CodeOrFile(const LightField& light_field, LfImageId id,
-                                          const RecordedImage& image) const {
-  if (files_ == KeepFiles::kNone) return Code(image);
+                                          const RecordedImage& image, double factor) const {
+  if (files_ == KeepFiles::kNone) return Code(image, factor);
   LF_ASSIGN_OR_RETURN(std::optional<CodedImage> file, FileAsCode(light_field, id, image));
   if (file && files_ == KeepFiles::kAll) return *std::move(file);
-  return SmallerOf(Code(image), std::move(file));
+  return SmallerOf(Code(image, factor), std::move(file));
 }
 
-CodedImage ImageCoder::Code(const RecordedImage& image) const {
+CodedImage ImageCoder::Code(const RecordedImage& image, double factor) const {
   CodecSettings settings = settings_;
+  settings.threshold *= factor;
   if (IsLinear(image) && settings.profile == CodecProfile::kDefault) {
     settings.threshold *= curve_->grey_step();
     RecordedImage on_curve = image;

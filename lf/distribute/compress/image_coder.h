@@ -25,11 +25,12 @@ class ImageCoder {
 
   // Returns the LF image `image` as the store keeps it: encoded, or as its file. kInput: the file
   // cannot be read.
+  //   factor  multiplies the threshold of the settings
   Result<CodedImage> CodeOrFile(const LightField& light_field, LfImageId id,
-                                const RecordedImage& image) const;
+                                const RecordedImage& image, double factor = 1) const;
 
   // Encodes an image. The default profile encodes linear values of 16 bits along the display curve.
-  CodedImage Code(const RecordedImage& image) const;
+  CodedImage Code(const RecordedImage& image, double factor = 1) const;
 
   // Returns the levels of the display curve if images are encoded along it.
   std::optional<DisplayLevels> display_levels() const;

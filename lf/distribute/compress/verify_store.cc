@@ -23,7 +23,8 @@ Result<void> CheckStoreFacts(const CompressSource& source, const VerifyOptions& 
     return InputError(fmt::format(
         "{}: is a packed store of another light field: give the light field that it was made from",
         options.store.string()));
-  if (const std::string asked = NameOf(options.settings, options.files); facts.codec != asked)
+  if (const std::string asked = NameOf(options.settings, options.files, options.factors);
+      facts.codec != asked)
     return InputError(fmt::format(
         "{}: was made with the encoding \"{}\", but the options ask for \"{}\": give the "
         "options that the store was made with",
@@ -71,7 +72,8 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
     LF_ASSIGN_OR_RETURN(std::unique_ptr<PackedCodeReader> reader, reader_of_thread());
     const Result<PackedCodeReader::Bytes> bytes = reader->Read(code);
     LF_RETURN_IF_ERROR(bytes);
-    LF_ASSIGN_OR_RETURN(const CodedImage again, coder.CodeOrFile(light_field, id, *image));
+    LF_ASSIGN_OR_RETURN(const CodedImage again,
+                        coder.CodeOrFile(light_field, id, *image, options.factors.Of(id.value)));
     if (code.values != StoredValues::kFile) {
       DecodedPart decoded;
       LF_RETURN_IF_ERROR(DecodeImage(bytes->code, &decoded));

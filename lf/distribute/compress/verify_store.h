@@ -10,6 +10,7 @@
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
 #include "lf/distribute/compress/compress_source.h"
+#include "lf/distribute/compress/image_use.h"
 #include "lf/distribute/compress/keep_files.h"
 #include "lf/pixels/codec/lf_image_codec.h"
 #include "lf/storage/packed/packed_store_writer.h"
@@ -19,6 +20,7 @@ namespace lf {
 struct VerifyOptions {
   std::filesystem::path store;
   CodecSettings settings;              // settings that the store must have been made with
+  ThresholdFactors factors;            // factors of their threshold
   KeepFiles files = KeepFiles::kNone;  // as the store must have been made
   PackedStorePlan plan;                // the plan that the store must match
   bool any_shards = true;              // true: shards may have any size

@@ -15,6 +15,7 @@
 #include "lf/distribute/preprocess/later_render.h"
 #include "lf/distribute/preprocess/package_folder.h"
 #include "lf/distribute/preprocess/split_film.h"
+#include "lf/light_field/model/reduction.h"
 #include "lf/render/collect/frame_lens.h"
 #include "lf/render/hybrid/rebin_cost.h"
 #include "lf/render/hybrid/render_memory.h"
@@ -467,6 +468,7 @@ Result<void> Preprocessor::Forecast(const Package& package, PackageForecast* for
 Result<PreprocessReport> Preprocess(const LightField& light_field, const CameraPath& path,
                                     const PreprocessOptions& options, ThreadPool& pool,
                                     const std::function<void(size_t, size_t)>& progress) {
+  LF_RETURN_IF_ERROR(CheckNotReduced(light_field, "a package"));
   return Preprocessor(light_field, path, options, pool, progress).Run();
 }
 

@@ -31,12 +31,16 @@ Result<void> DecodeFile(std::string_view bytes, const std::string& name) {
 
 }  // namespace
 
-CodeChecker::CodeChecker(const LightField& light_field, std::vector<PackedCode> codes)
-    : light_field_(light_field), codes_(std::move(codes)) {}
+CodeChecker::CodeChecker(const LightField& light_field, std::vector<PackedCode> codes,
+                         int missing_parts)
+    : light_field_(light_field), codes_(std::move(codes)), missing_parts_(missing_parts) {}
 
 Result<std::unique_ptr<CodeChecker>> CodeChecker::Open(const LightField& light_field) {
   LF_ASSIGN_OR_RETURN(std::vector<PackedCode> codes, FindCodes(light_field.folder, light_field));
-  return std::unique_ptr<CodeChecker>(new CodeChecker(light_field, std::move(codes)));
+  LF_ASSIGN_OR_RETURN(const PackedStoreFacts facts, ReadPackedStore(light_field.folder));
+  const auto missing_parts = static_cast<int>(facts.part_count - facts.found_parts);
+  return std::unique_ptr<CodeChecker>(
+      new CodeChecker(light_field, std::move(codes), missing_parts));
 }
 
 CodeChecker::Fault CodeChecker::Check(LfImageId id, bool decode) const {
@@ -46,6 +50,10 @@ CodeChecker::Fault CodeChecker::Check(LfImageId id, bool decode) const {
   if (code.bytes == 0)
     return {true, fmt::format("{}: is not in the packed store, because it was missing or broken "
                               "when the store was made",
+                              name)};
+  if (code.missing_parts > missing_parts_)
+    return {true, fmt::format("{}: is not completely in the files beside the packed store, which "
+                              "were not copied to their end: copy them again",
                               name)};
   const Intrinsics& k = light_field_.intrinsics[light_field_.cameras[id.value].intrinsics_index];
   if (Intersection(code.rect, {0, 0, k.width_px, k.height_px}) != code.rect)
@@ -72,7 +80,12 @@ Result<void> CodeChecker::Decode(LfImageId id, const std::string& name) const {
   }
   const bool is_file = codes_[id.value].values == StoredValues::kFile;
   Result<void> result;
-  if (const auto bytes = reader->Read(codes_[id.value]); !bytes) {
+  const PackedCode& code = codes_[id.value];
+  if (code.missing_parts > 0) {
+    // The bytes that are there are only compared with their checksums.
+    const auto front = reader->ReadFront(code, code.missing_parts);
+    if (!front) result = Named(front.error(), name);
+  } else if (const auto bytes = reader->Read(code); !bytes) {
     result = Named(bytes.error(), name);
   } else {
     result = is_file ? DecodeFile(bytes->code, name) : DecodeAll(bytes->code, name);

@@ -27,16 +27,18 @@ class CodeChecker {
     bool is_left_out = false;  // true: it was left out of the store on purpose, which is no fault
   };
   // Checks one LF image. May be called by many threads at the same time.
-  //   decode  false: checks only the entry in the store's table; true: also decodes image and mask
+  //   decode  false: checks only the entry in the store's table; true: also decodes image and mask,
+  //           or, if the store lacks its finest parts, compares the others with their checksums
   Fault Check(LfImageId id, bool decode) const;
 
  private:
-  CodeChecker(const LightField& light_field, std::vector<PackedCode> codes);
+  CodeChecker(const LightField& light_field, std::vector<PackedCode> codes, int missing_parts);
   // The message of an error begins with `name`.
   Result<void> Decode(LfImageId id, const std::string& name) const;
 
   const LightField& light_field_;
   const std::vector<PackedCode> codes_;
+  const int missing_parts_;  // number of files that a store by resolution lacks
   mutable std::mutex mutex_;
   mutable std::vector<PackedCodeReader> readers_;  // open readers that no call uses now
 };

@@ -14,6 +14,7 @@
 #include "lf/core/parse_number.h"
 #include "lf/core/shell_word.h"
 #include "lf/core/spelling.h"
+#include "lf/light_field/model/reduction.h"
 
 namespace lf {
 namespace {
@@ -61,6 +62,12 @@ bool SetByOption(const std::string& option, const std::string& value, LightField
   }
   if (option == OptionFor("recorded_fps")) return set_number(kAny, &words->recorded_fps.emplace());
   if (option == OptionFor("frame_cache")) return set(true, &words->frame_cache);
+  if (option == OptionFor("reduce")) {
+    double number = 0;
+    const bool is_set = set_number(kMostReduction, &number);
+    words->reduce = static_cast<int>(number);
+    return is_set;
+  }
   if (option == OptionFor("images")) return set(true, &words->images);
   if (option == OptionFor("image_scale")) return set(true, &words->image_scale);
   if (option == OptionFor("image_alpha"))
@@ -84,6 +91,7 @@ Result<OpenOptions> LightFieldWords::Options() const {
   if (!images.empty()) options.images_folder = images;
   options.time = time;
   options.recorded_fps = recorded_fps;
+  options.reduce = reduce;
   if (!frame_cache.empty()) options.frame_cache = frame_cache;
   return options;
 }
@@ -102,6 +110,7 @@ std::vector<std::string> LightFieldWords::Words() const {
   if (time) add("time", fmt::format("{}", *time));
   if (recorded_fps) add("recorded_fps", fmt::format("{}", *recorded_fps));
   if (!frame_cache.empty()) add("frame_cache", FileArgument(frame_cache));
+  if (reduce != 1) add("reduce", fmt::format("{}", reduce));
   return words;
 }
 

@@ -19,6 +19,7 @@ struct LightFieldWords {
   std::string images, image_scale = "auto", image_alpha = "auto", background;
   std::optional<double> time, recorded_fps;
   std::string frame_cache;
+  int reduce = 1;
 
   // Converts the options. kUsage if a value cannot be parsed.
   Result<OpenOptions> Options() const;

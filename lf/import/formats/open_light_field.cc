@@ -32,6 +32,7 @@
 #include "lf/light_field/colmap/read_colmap.h"
 #include "lf/light_field/model/brackets.h"
 #include "lf/light_field/model/image_files.h"
+#include "lf/light_field/model/reduction.h"
 #include "lf/light_field/model/time_slices.h"
 #include "lf/light_field/transforms_json/transforms_json.h"
 #include "lf/pixels/files/hdf5_array.h"
@@ -49,6 +50,33 @@ Result<LightField> OpenAos(const fs::path& path, const OpenOptions& options) {
   LF_RETURN_IF_ERROR(CheckNoStanfordOptions(path, options));
   LogDebug("{}: opened as poses of Airborne Optical Sectioning", path.string());
   return ReadAos(path, {.fov_deg = options.fov_deg, .images_folder = options.images_folder});
+}
+
+// Reduces the LF images of a packed store by resolution to the parts that are there. Warns if parts
+// are missing or incomplete, unless the reduction that was asked for does not need them.
+Result<void> ReduceToParts(const fs::path& path, int asked, PackedStoreFacts* facts) {
+  const size_t missing = facts->part_count - facts->found_parts;
+  // The first part of a mosaic has half the resolution of its recorded pixels.
+  const size_t halvings = missing > 0 && facts->light_field.encoding.bayer != BayerPattern::kNone
+                              ? missing + 1
+                              : missing;
+  const int divisor = std::min(1 << std::min(halvings, size_t{8}), kMostReduction);
+  const fs::path last = FilesOf(path, *facts).back();
+  if (facts->cut_count > 0 && asked <= divisor)
+    LogWarning(
+        "{}: has the bytes of {} of {} LF images, because it was not copied to its end: the others "
+        "count as missing; copy the file again{}",
+        last.string(), facts->light_field.size() - facts->left_out_count - facts->cut_count,
+        facts->light_field.size() - facts->left_out_count,
+        facts->found_parts > 1 && 2 * divisor <= kMostReduction
+            ? fmt::format(", or load all LF images smaller ({{reduce {}}})", 2 * divisor)
+            : "");
+  if (divisor > asked)
+    LogWarning(
+        "{}: {} of the store's {} files of LF images are missing: LF images are loaded at 1/{} of "
+        "their width and height; copy the files beside the store for more",
+        path.string(), missing, facts->part_count, divisor);
+  return ReduceLightField(divisor, &facts->light_field);
 }
 
 // Opens a packed store. Most options are refused, because a store contains its calibration and
@@ -81,6 +109,7 @@ Result<LightField> OpenPackedStore(const fs::path& path, const OpenOptions& opti
         "that is rendered without these packages has another order of LF images and other lens "
         "weights than that of the whole light field; make the store again with lfcompressor",
         path.string(), facts.light_field.size(), facts.whole.image_count);
+  LF_RETURN_IF_ERROR(ReduceToParts(path, options.reduce, &facts));
   return std::move(facts.light_field);
 }
 
@@ -417,6 +446,7 @@ Result<LightField> OpenLightField(const fs::path& path, const OpenOptions& optio
   // A packed store needs no ApplyBrackets(), because its encoded masks contain the clipped pixels.
   if (!HoldsPackedStore(light_field) && light_field.encoding.masks_clipped)
     ApplyBrackets(&light_field);
+  LF_RETURN_IF_ERROR(ReduceLightField(options.reduce, &light_field));
   if (light_field.video && light_field.slice_times.size() == 1)
     LogInfo("{}: shows the time {:.6g} of a light field video, {}", path.string(),
             light_field.slice_times[0], TextOfSpan(*light_field.video));

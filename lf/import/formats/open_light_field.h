@@ -61,6 +61,9 @@ struct OpenOptions {
   CallAgain call_again = {};
   // How much the size of image files may differ from the calibrated size.
   ImageScale image_scale = {};
+  // LF images are loaded at 1/reduce of their width and height: 1, 2, 4 or 8
+  // (light_field/model/reduction.h). kUsage for densified packed stores.
+  int reduce = 1;
   // alpha, background and keeps_opacity state the meaning of alpha and the background, and override
   // the calibration (light_field/model/radiance.h). kUsage: a packed store that was encoded for the
   // other kind of alpha (mask or light); a background that is brighter than max_radiance, or for
@@ -127,8 +130,9 @@ bool HoldsOwnAndItsSource(const std::filesystem::path& folder, bool has_grid = f
 // is no light field (the message lists what was searched for, and advises how to export files that
 // only other programs read); an error of the reader;
 // images_folder has none of the images; masks_folder has none of the masks; camera raw files with
-// an unknown Bayer pattern. kUsage: an option that the calibration does not allow; a light field
-// video without a time. kOutput: frames of a video cannot be decoded.
+// an unknown Bayer pattern. A packed store by resolution that lacks its finest parts is opened as a
+// light field of smaller LF images, with a warning. kUsage: an option that the calibration does not
+// allow; a light field video without a time. kOutput: frames of a video cannot be decoded.
 Result<LightField> OpenLightField(const std::filesystem::path& path,
                                   const OpenOptions& options = {});
 

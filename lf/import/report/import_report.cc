@@ -226,6 +226,11 @@ std::string ReportText(const ImportReport& report) {
   AddLine("first image", report.first_image, &lines);
   AddLine("images", ImagesText(report), &lines);
   if (report.video) AddLine("video", VideoText(report), &lines);
+  if (report.films)
+    AddLine("encoded for",
+            fmt::format("the film of {}: {} frames, lens weights {}", report.films->source,
+                        report.films->frame_count, report.films->lens_weights),
+            &lines);
   if (report.pixels) AddLine("pixels", PixelsText(*report.pixels), &lines);
   if (report.agreement) AddLine("agreement", Spelled(TextOf(*report.agreement)), &lines);
   if (report.profile) AddLine("colours", TextOf(*report.profile), &lines);
@@ -289,6 +294,10 @@ std::string ReportJson(const ImportReport& report) {
     if (report.faults->left_out_count > 0) json["not_stored"] = report.faults->left_out_count;
   }
   if (report.video) json["video"] = VideoJson(report);
+  if (report.films)
+    json["encoded_for"] = {{"packages", report.films->source},
+                           {"frames", report.films->frame_count},
+                           {"lens_weights", report.films->lens_weights}};
   json["pixels"] = OrNull(report.pixels);
   json["agreement"] = OrNull(report.agreement);
   json["colour_profile"] = OrNull(report.profile);

@@ -18,6 +18,7 @@
 #include "lf/import/exposure/match_exposure.h"
 #include "lf/light_field/model/light_field.h"
 #include "lf/light_field/model/radiance.h"
+#include "lf/storage/packed/packed_store_file.h"
 
 namespace lf {
 
@@ -36,7 +37,8 @@ struct ImportReport {
   // other light fields.
   std::optional<VideoFacts> video;
   std::vector<double> shown_times;
-  size_t excluded_count = 0;  // number of LF images that were left out on purpose
+  std::optional<StoreFilms> films;  // nullopt unless a packed store was encoded for certain films
+  size_t excluded_count = 0;        // number of LF images that were left out on purpose
   // nullopt: the files were not checked, or faults of the files forbid that anything is written
   std::optional<FootprintFacts> pixels;
   std::optional<Agreement> agreement;       // nullopt as `pixels`

@@ -62,6 +62,15 @@ struct VideoFacts {
   bool is_of_path = false;     // true: the slices that are open are those that a path shows
 };
 
+// How LF images are loaded smaller than they were recorded (light_field/model/reduction.h).
+// LightField::intrinsics are then those of the reduced LF images, and LightField::encoding has no
+// Bayer pattern.
+struct Reduction {
+  int divisor = 1;  // a pixel is the mean of divisor x divisor recorded pixels: 2, 4 or 8
+  std::vector<Intrinsics> recorded_intrinsics;  // indexed like LightField::intrinsics
+  BayerPattern recorded_bayer = BayerPattern::kNone;
+};
+
 // lf::Open() makes one of a calibration. A program may also make one of `cameras`, `intrinsics`,
 // `image_names` and `folder`; the other members have defaults.
 struct LightField {
@@ -75,6 +84,8 @@ struct LightField {
   std::filesystem::path folder;
   // The file or folder that OpenLightField() was given; empty: the light field was made in memory.
   std::filesystem::path source;
+
+  std::optional<Reduction> reduction;  // set if LF images are loaded reduced
 
   RadianceEncoding encoding;
   double unit_m = 1;                      // metres per world unit

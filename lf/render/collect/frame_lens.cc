@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "lf/camera/ray_through.h"
 #include "lf/light_field/model/time_slices.h"
 #include "lf/render/collect/around_lens.h"
+#include "lf/render/collect/square_weights.h"
 #include "lf/selection/lens_weights/image_feather.h"
 
 namespace lf {
@@ -142,57 +142,19 @@ std::optional<FrameLens::Facts> FactsOf(std::span<const FrameLens> lenses) {
 
 Image<float> EffectiveCountsOf(std::span<const FrameLens> lenses) {
   if (lenses.front().weights() == nullptr) return {};
-  const Intrinsics& plate = lenses.front().camera_.pinhole.intrinsics;
-  const LightField& light_field = lenses.front().light_field_;
-  const int step = EffectiveStep(plate);
-  const auto [columns, rows] = EffectiveSquares(plate);
-  Image<double> sums(columns, rows, 2);
-  const auto element = [step](int node, int size) {
-    return std::min(node * step + step / 2, size - 1);
-  };
-  std::vector<std::vector<std::optional<Vec3>>> focus(lenses.size());  // [lens][row][column]
+  const LightField& light_field = lenses.front().light_field();
   std::vector<LfImageId> ids;
-  for (size_t l = 0; l < lenses.size(); ++l) {
-    const std::vector<LfImageId>& near = lenses[l].near_;
-    for (size_t camera = 0; camera < near.size(); ++camera)
-      if (lenses[l].weights_->TakesPart(camera) &&
-          !light_field.cameras[near[camera].value].is_virtual)
-        ids.push_back(near[camera]);
-    for (int row = 0; row < rows; ++row)
-      for (int column = 0; column < columns; ++column)
-        focus[l].push_back(FocusPointOfElement(lenses[l].camera_,
-                                               element(column, plate.width_px) + 0.5,
-                                               element(row, plate.height_px) + 0.5));
-  }
+  for (const FrameLens& lens : lenses)
+    for (const LfImageId id : lens.near())
+      if (lens.Takes(id) && !light_field.cameras[id.value].is_virtual) ids.push_back(id);
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-  std::vector<ApertureTest> openings;
-  std::vector<LensPlane> planes;
-  for (const FrameLens& lens : lenses) {
-    openings.emplace_back(lens.camera_.aperture);
-    planes.emplace_back(lens.camera_);
-  }
+  const SquareWeights squares(lenses);
+  const int columns = squares.columns(), rows = squares.rows();
+  Image<double> sums(columns, rows, 2);
   Image<double> of_image(columns, rows);
   for (const LfImageId id : ids) {
-    std::fill(of_image.pixels().begin(), of_image.pixels().end(), 0.0);
-    for (size_t l = 0; l < lenses.size(); ++l) {
-      const FrameLens& lens = lenses[l];
-      const std::optional<size_t> camera = lens.IndexOf(id);
-      if (!camera || !lens.weights_->TakesPart(*camera)) continue;
-      const RayThrough ray(light_field.Camera(id), lens.camera_.pinhole.ForwardWorld());
-      const RayWeights weights = lens.WeightsOf(id);
-      for (int row = 0; row < rows; ++row)
-        for (int column = 0; column < columns; ++column) {
-          const std::optional<Vec3>& point = focus[l][static_cast<size_t>(row) * columns + column];
-          if (!point) continue;
-          if (lens.tests_opening() &&
-              !openings[l].Contains(planes[l].PointOfLine(ray.centre_world(), *point)))
-            continue;
-          if (!IsSeenBy(ray, *point)) continue;
-          of_image.at(column, row) +=
-              weights.At(element(column, plate.width_px), element(row, plate.height_px));
-        }
-    }
+    squares.Of(id, of_image.pixels());
     for (int row = 0; row < rows; ++row)
       for (int column = 0; column < columns; ++column) {
         const double weight = of_image.at(column, row);

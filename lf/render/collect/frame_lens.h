@@ -78,6 +78,8 @@ class FrameLens {
   };
   std::optional<Facts> facts() const;
 
+  const LightField& light_field() const { return light_field_; }
+
   // Returns the effective numbers of LF images of a frame that has only this lens.
   Image<float> EffectiveCounts() const;
 
@@ -85,8 +87,6 @@ class FrameLens {
   void ReduceWeights(double factor);
 
  private:
-  friend Image<float> EffectiveCountsOf(std::span<const FrameLens> lenses);
-
   const LightField& light_field_;
   const bool is_of_recorded_;  // true: virtual LF images have the weight 0
   SelectOptions select_;

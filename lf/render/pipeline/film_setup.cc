@@ -11,6 +11,7 @@
 #include "lf/render/hybrid/render_memory.h"
 #include "lf/render/pipeline/check_film_settings.h"
 #include "lf/render/pipeline/resolved_settings.h"
+#include "lf/render/pipeline/warn_of_other_film.h"
 #include "lf/storage/load/measure_footprint.h"
 #include "lf/storage/load/open_store.h"
 
@@ -62,6 +63,7 @@ Result<std::unique_ptr<FilmSetup>> FilmSetup::Make(Package package, const FilmSe
           film.reading.estimator == Estimator::kBilinear ? Mosaics::kToRgb : Mosaics::kAsRecorded,
           resolved.guard ? StoreContent::kPixelsAndDepths : StoreContent::kPixels));
   setup->film_.guard = setup->store_->LoadsDepths();
+  LF_RETURN_IF_ERROR(WarnOfOtherFilm(setup->package(), setup->film()));
   LF_RETURN_IF_ERROR(setup->CheckStore());
   LF_RETURN_IF_ERROR(setup->FindFootprint());
   LF_RETURN_IF_ERROR(setup->PlanMemory());

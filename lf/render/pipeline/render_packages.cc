@@ -9,6 +9,7 @@
 #include "lf/core/log.h"
 #include "lf/film/develop/video.h"
 #include "lf/light_field/model/image_files.h"
+#include "lf/light_field/model/reduction.h"
 #include "lf/render/package/package_file.h"
 #include "lf/render/pipeline/check_outputs.h"
 #include "lf/render/pipeline/frame_output.h"
@@ -174,6 +175,7 @@ Result<Package> OpenAgain(const PackagePart& part, PackagedFilm* film) {
 }  // namespace
 
 Result<LightFieldPlace> PlaceOf(const std::string& name, const LightField& light_field) {
+  LF_RETURN_IF_ERROR(CheckNotReduced(light_field, "a package"));
   LightFieldPlace place{name, IdentityOf(light_field), std::nullopt, light_field.folder};
   if (HoldsPackedStore(light_field)) {
     LF_ASSIGN_OR_RETURN(place.whole, ReadWholeIdentity(light_field.folder));

@@ -31,7 +31,8 @@ struct LightFieldPlace {
 
 // Returns the LightFieldPlace of an opened light field.
 //   name  name of the light field in messages
-// kInput: a damaged packed store.
+// kInput: a damaged packed store. kUsage: the light field is reduced, and packages state whole LF
+// images.
 Result<LightFieldPlace> PlaceOf(const std::string& name, const LightField& light_field);
 
 // Reads a package, and checks it and a few image files of its light field. If the light field is a

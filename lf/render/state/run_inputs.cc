@@ -62,27 +62,32 @@ std::string ColoursText(const RadianceEncoding& encoding) {
 
 std::string Text(const Vec3& v) { return fmt::format("{} {} {}", v.x(), v.y(), v.z()); }
 
+// Adds everything of a camera but its intrinsics.
+void AddLens(const RenderCamera& camera, ValueHasher* hasher) {
+  hasher->Add(camera.pinhole.cam_from_world);
+  hasher->Add(camera.aperture.radius_w);
+  hasher->Add(camera.aperture.blades);
+  hasher->Add(camera.aperture.rotation_rad);
+  if (HasShape(camera)) {
+    hasher->Add(camera.aperture.ratio);
+    hasher->Add(camera.aperture.roundness);
+    hasher->Add(camera.hood.distance_w);
+    hasher->Add(camera.hood.radius_w);
+  }
+  if (camera.transmission) hasher->Add(camera.transmission->Text());
+  if (camera.recording_time) {
+    hasher->Add(std::string("recording time"));
+    hasher->Add(*camera.recording_time);
+  }
+  if (camera.surface) hasher->Add("surface " + camera.surface->Digest());
+  hasher->AddMatrix(camera.focus_plane.normal);
+  hasher->Add(camera.focus_plane.offset_w);
+}
+
 std::string CameraHash(const RenderCamera& camera) {
   ValueHasher hasher;
   hasher.Add(camera.pinhole.intrinsics);
-  hasher.Add(camera.pinhole.cam_from_world);
-  hasher.Add(camera.aperture.radius_w);
-  hasher.Add(camera.aperture.blades);
-  hasher.Add(camera.aperture.rotation_rad);
-  if (HasShape(camera)) {
-    hasher.Add(camera.aperture.ratio);
-    hasher.Add(camera.aperture.roundness);
-    hasher.Add(camera.hood.distance_w);
-    hasher.Add(camera.hood.radius_w);
-  }
-  if (camera.transmission) hasher.Add(camera.transmission->Text());
-  if (camera.recording_time) {
-    hasher.Add(std::string("recording time"));
-    hasher.Add(*camera.recording_time);
-  }
-  if (camera.surface) hasher.Add("surface " + camera.surface->Digest());
-  hasher.AddMatrix(camera.focus_plane.normal);
-  hasher.Add(camera.focus_plane.offset_w);
+  AddLens(camera, &hasher);
   return hasher.Text();
 }
 
@@ -164,6 +169,18 @@ std::string HashOfCameras(const CameraPath& path) {
   ValueHasher hasher;
   for (const RenderCamera& camera : path.cameras) hasher.Add(CameraHash(camera));
   for (const RenderCamera& camera : path.instants) hasher.Add(CameraHash(camera));
+  return hasher.Text();
+}
+
+std::string HashOfLenses(const CameraPath& path) {
+  ValueHasher hasher;
+  for (const RenderCamera& camera : path.AllInstants()) {
+    // Rounded, because a focal length in elements is rounded differently for each resolution.
+    const Intrinsics& plate = camera.pinhole.intrinsics;
+    hasher.Add(
+        fmt::format("{:.6g} {:.6g}", plate.fx_px / plate.width_px, plate.fy_px / plate.height_px));
+    AddLens(camera, &hasher);
+  }
   return hasher.Text();
 }
 

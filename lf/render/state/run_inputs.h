@@ -83,6 +83,10 @@ inline constexpr const char* kFilmOfPackage = "picture.film";
 // same hash.
 std::string HashOfCameras(const CameraPath& path);
 
+// Returns a hash of what decides which rays the cameras of a film take: everything but the numbers
+// of their elements. A film has the same hash at any resolution.
+std::string HashOfLenses(const CameraPath& path);
+
 // The first input that differs, and its values on both sides; "(none)" for a side that lacks the
 // key.
 struct InputDifference {

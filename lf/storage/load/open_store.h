@@ -11,7 +11,8 @@
 namespace lf {
 
 // Returns a PackedStore if light_field.folder is the file of a packed store, otherwise a
-// FolderStore. The store keeps a reference to `light_field`, which must outlive it. kInput as
+// FolderStore. Of a reduced light field, returns a store that loads reduced LF images, always in
+// RGB. The store keeps a reference to `light_field`, which must outlive it. kInput as
 // PackedStore::Open().
 Result<std::unique_ptr<LfImageStore>> OpenStore(const LightField& light_field, Mosaics mosaics,
                                                 StoreContent content = StoreContent::kPixels);

@@ -50,6 +50,18 @@ Result<void> CheckListed(const PackedCode& code, const LightField& light_field, 
   return {};
 }
 
+// Returns kInput if a part of the store lacks bytes of the LF image that are needed.
+//   unneeded_parts  number of the finest parts that are not needed
+Result<void> CheckParts(const PackedCode& code, int unneeded_parts, const LightField& light_field,
+                        LfImageId id) {
+  if (code.missing_parts <= unneeded_parts) return {};
+  return InputError(
+      fmt::format("{}: is not completely in the files beside the packed store, of which some are "
+                  "missing or were "
+                  "not copied to their end: copy all files of the store again",
+                  light_field.ImagePath(id).string()));
+}
+
 // Checks the head of an encoded image against the store's table and the encoding, before memory is
 // allocated for its pixels.
 //   grey_too  a grey image is valid in place of `layout`
@@ -135,9 +147,11 @@ PackedStore::PackedStore(const LightField& light_field, Mosaics mosaics,
       codes_(std::move(codes)) {}
 
 Result<std::unique_ptr<PackedStore>> PackedStore::Open(const LightField& light_field,
-                                                       Mosaics mosaics, StoreContent content) {
+                                                       Mosaics mosaics, StoreContent content,
+                                                       int reduction) {
   LF_ASSIGN_OR_RETURN(std::vector<PackedCode> codes, FindCodes(light_field.folder, light_field));
   std::unique_ptr<PackedStore> store(new PackedStore(light_field, mosaics, std::move(codes)));
+  store->unneeded_parts_ = store->FrontsLeftOut(reduction);
   if (std::any_of(store->codes_.begin(), store->codes_.end(),
                   [](const PackedCode& code) { return code.values == StoredValues::kDisplay16; })) {
     LF_ASSIGN_OR_RETURN(const DisplayLevels levels, ReadDisplayLevels(light_field.folder));
@@ -147,6 +161,14 @@ Result<std::unique_ptr<PackedStore>> PackedStore::Open(const LightField& light_f
     LF_ASSIGN_OR_RETURN(store->densified_, ReadDensifiedPlan(light_field.folder));
   }
   return store;
+}
+
+// Returns the number of fronts that are longer than the one with which LF images are reduced by
+// `divisor`; 0 if whole images are needed. The first level of a mosaic halves it already.
+int PackedStore::FrontsLeftOut(int divisor) const {
+  const int halvings = std::countr_zero(static_cast<unsigned>(divisor));
+  const bool is_mosaic = light_field_.encoding.bayer != BayerPattern::kNone;
+  return is_mosaic && halvings > 0 ? halvings - 1 : halvings;
 }
 
 bool PackedStore::IsPartial() const {
@@ -166,6 +188,7 @@ bool PackedStore::Keeps(LfImageId id, const PixelRect& rect) const {
 Result<void> PackedStore::Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const {
   LF_CHECK(id.value < light_field_.size());
   LF_RETURN_IF_ERROR(CheckListed(codes_[id.value], light_field_, id));
+  LF_RETURN_IF_ERROR(CheckParts(codes_[id.value], 0, light_field_, id));
   LF_ASSIGN_OR_RETURN(std::unique_ptr<Loading> loading, TakeLoading());
   Result<void> loaded = LoadMosaicsAs(
       mosaics_, light_field_, id, rect,
@@ -200,8 +223,8 @@ Result<int> PackedStore::LoadReducedBy(Loading* loading, LfImageId id, int divis
   const Intrinsics& k = light_field_.intrinsics[camera.intrinsics_index];
   const bool is_mosaic = light_field_.encoding.bayer != BayerPattern::kNone;
   // Means of ordered half floats are far from those of light beside edges.
-  if (divisor % 2 != 0 || densified_ || light_field_.encoding.HasOpacity() ||
-      code.values == StoredValues::kHalf || (is_mosaic && mosaics_ == Mosaics::kAsRecorded) ||
+  if (divisor % 2 != 0 || densified_ || code.values == StoredValues::kHalf ||
+      (is_mosaic && mosaics_ == Mosaics::kAsRecorded) ||
       code.rect != PixelRect{0, 0, k.width_px, k.height_px})
     return 1;
   const std::string name = light_field_.ImagePath(id).string();
@@ -219,10 +242,9 @@ Result<int> PackedStore::LoadReducedBy(Loading* loading, LfImageId id, int divis
   }
   const int bits = code.values == StoredValues::kUint8 ? 8 : 16;
   LF_RETURN_IF_ERROR(CheckLevels(light_field_.encoding, bits, name));
-  // The first level of a mosaic halves it already, so that fewer fronts are left out.
-  const int wanted = std::countr_zero(static_cast<unsigned>(divisor));
-  const int left_out = is_mosaic ? wanted - 1 : wanted;
+  const int left_out = FrontsLeftOut(divisor);
   if (left_out == 0) return 1;
+  LF_RETURN_IF_ERROR(CheckParts(code, left_out, light_field_, id));
   const auto front = loading->reader.ReadFront(code, static_cast<size_t>(left_out));
   if (!front) return named(front.error());
   if (!*front) return 1;
@@ -244,6 +266,8 @@ Result<int> PackedStore::LoadReducedBy(Loading* loading, LfImageId id, int divis
   }
   pixels->Reset(loading->decoded.rect, BayerPattern::kNone);
   Convert(loading, code.values, {}, encoding, camera, reduced, pixels);
+  // An encoded image with fronts has no mask.
+  if (encoding.HasOpacity()) SetOpaque(pixels);
   return reduction;
 }
 

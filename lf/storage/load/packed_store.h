@@ -30,8 +30,11 @@ class PackedStore : public LfImageStore {
   // Opens the file light_field.folder. LF images are found in it by name, so that `light_field` may
   // be the store's own light field or another one, such as that of a package. kInput as
   // FindCodes() and ReadDisplayLevels().
+  //   reduction  LF images will only be loaded reduced by this or a multiple, so that parts of the
+  //              store with more resolution need not be there
   static Result<std::unique_ptr<PackedStore>> Open(const LightField& light_field, Mosaics mosaics,
-                                                   StoreContent content = StoreContent::kPixels);
+                                                   StoreContent content = StoreContent::kPixels,
+                                                   int reduction = 1);
 
   // Loads the pixels of `rect`, clipped to the image. kInput as LfImageStore says, naming store and
   // image: the image is not in the store, the pixels lie beyond those that were encoded, or the
@@ -49,8 +52,10 @@ class PackedStore : public LfImageStore {
   // As PackedCode::Keeps(). If a mosaic is loaded as RGB, the pixels beside `rect` from which its
   // colours are made must also be kept.
   bool Keeps(LfImageId id, const PixelRect& rect) const override;
-  // Returns true if the store's table lists encoded pixels.
-  bool IsThere(LfImageId id) const override { return codes_[id.value].bytes > 0; }
+  // Returns true if the store's table lists encoded pixels, and the parts that have them are there.
+  bool IsThere(LfImageId id) const override {
+    return codes_[id.value].bytes > 0 && codes_[id.value].missing_parts <= unneeded_parts_;
+  }
   uint64_t StoredBytes(LfImageId id) const override { return codes_[id.value].bytes; }
   // Returns the entry of the store's table for an LF image.
   const PackedCode& CodeOf(LfImageId id) const { return codes_[id.value]; }
@@ -68,6 +73,7 @@ class PackedStore : public LfImageStore {
   };
 
   PackedStore(const LightField& light_field, Mosaics mosaics, std::vector<PackedCode> codes);
+  int FrontsLeftOut(int divisor) const;
   Result<void> LoadRecorded(Loading* loading, LfImageId id, const PixelRect& rect,
                             LfPixels* pixels) const;
   void Convert(Loading* loading, StoredValues values, const PixelRect& coded,
@@ -83,8 +89,9 @@ class PackedStore : public LfImageStore {
   const LightField& light_field_;
   const RadianceTables tables_;  // for LF images of gain 1
   const Mosaics mosaics_;
-  const std::vector<PackedCode> codes_;     // entry of each LF image, in the order of their ids
-  std::optional<DisplayCurve> curve_;       // set if any LF image is encoded as kDisplay16
+  const std::vector<PackedCode> codes_;  // entry of each LF image, in the order of their ids
+  int unneeded_parts_ = 0;               // number of the store's finest parts that are not needed
+  std::optional<DisplayCurve> curve_;    // set if any LF image is encoded as kDisplay16
   std::optional<DensifiedPlan> densified_;  // set if Load() loads depths and trust
   mutable std::mutex mutex_;
   mutable std::vector<std::unique_ptr<Loading>> loadings_;  // buffers that no load uses now

@@ -57,10 +57,12 @@ class PackedStoreTest : public FolderTest {
     ASSERT_TRUE(WriteImage(folder_ / "mask.png", mask.view()));
   }
   // Packs the pixels `rect` of all images without loss, or their files.
-  void Pack(const PixelRect& rect = kPackedWhole, uint64_t shard_bytes = 0, bool files = false) {
+  void Pack(const PixelRect& rect = kPackedWhole, uint64_t shard_bytes = 0, bool files = false,
+            size_t part_count = 0) {
     PackedStorePlan plan;
     plan.whole = IdentityOf(field_);
     plan.shard_bytes = shard_bytes;
+    plan.part_count = part_count;
     PackedStoreWriter writer = PackedStoreWriter::Create(path_, field_, plan).value();
     CodecSettings settings;
     settings.profile = CodecProfile::kLossless;

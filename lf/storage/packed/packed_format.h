@@ -42,6 +42,11 @@ inline constexpr const char* kFrontsTable =
     "create table fronts (id integer primary key, fronts blob not null);";
 inline constexpr const char* kFrontsName = "fronts";
 
+// Table of a store by resolution, in place of `blobs` and `fronts`: where the bytes of each encoded
+// image are in its parts (part_file.h).
+inline constexpr const char* kRangesTable =
+    "create table ranges (id integer primary key, ranges blob not null);";
+
 // Further tables of a densified store.
 inline constexpr const char* kDensifiedTables = R"(
 create table virtual_images (id integer primary key);
@@ -55,12 +60,13 @@ inline constexpr const char* kLeftOutTable = "create table left_out (id integer 
 inline constexpr const char* kDensifiedKey = "densified";
 
 // Opens the file of a packed store for reading. It has the table of encoded images unless the store
-// has shards.
+// has shards or is by resolution.
 inline Result<Database> OpenStoreDatabase(const std::filesystem::path& path) {
   const std::string tables = fmt::format("{}{}{}", kSettingsTable, kIntrinsicsTable, kStoreTables);
   const std::string blobs = kBlobsTable;
   std::vector<std::string> scripts;
-  for (const std::string& of_images : {blobs + kFrontsTable, std::string(), blobs})
+  for (const std::string& of_images :
+       {blobs + kFrontsTable, std::string(), std::string(kRangesTable), blobs})
     for (const char* const further : {"", kDensifiedTables, kLeftOutTable})
       scripts.push_back(tables + of_images + further);
   return Database::Open(path, kStoreFormat, scripts);

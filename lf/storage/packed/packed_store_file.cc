@@ -15,6 +15,9 @@
 #include "lf/light_field/model/value_hasher.h"
 #include "lf/storage/packed/code_fronts.h"
 #include "lf/storage/packed/packed_format.h"
+#include "lf/storage/packed/part_file.h"
+#include "lf/storage/packed/part_set.h"
+#include "lf/storage/packed/plan_settings.h"
 #include "lf/storage/packed/plane_table.h"
 #include "lf/storage/tables/calibration_tables.h"
 #include "lf/storage/tables/stored_numbers.h"
@@ -107,6 +110,36 @@ Result<Database> OpenShardOf(const fs::path& path, const std::string& store, int
   return database;
 }
 
+// Sets PackedCode::missing_parts. Reads the places of LF images only if a part is smaller than the
+// store states.
+Result<void> FindMissingParts(OpenedStore* store, std::vector<PackedCode>* codes) {
+  LF_ASSIGN_OR_RETURN(const size_t part_count, PlannedParts(store->settings));
+  if (part_count == 0) return {};
+  LF_ASSIGN_OR_RETURN(const std::vector<uint64_t> stated, StatedPartBytes(store->settings));
+  LF_ASSIGN_OR_RETURN(const std::vector<uint64_t> found,
+                      FoundPartBytes(store->database.name(), store->settings));
+  if (found == stated) return {};
+  return ForEachRow(
+      store->database, "select id, ranges from ranges", [&](const Statement& row) -> Result<void> {
+        LF_ASSIGN_OR_RETURN(const int64_t id,
+                            row.Integer(0, 0, static_cast<int64_t>(codes->size()) - 1));
+        LF_ASSIGN_OR_RETURN(const std::string_view text, row.Blob(1));
+        const std::optional<ImageRanges> ranges = RangesOfText(text, part_count);
+        if (!ranges)
+          return store->settings.Damaged(
+              fmt::format("it states an impossible place of LF image {}", id));
+        const auto is_there = [&](size_t part, const PartRange& range) {
+          return range.bytes == 0 || (part < found.size() && range.end() <= found[part]);
+        };
+        size_t complete = is_there(0, ranges->mask) ? ranges->pieces.size() : 0;
+        for (size_t i = 0; i < complete; ++i)
+          if (!is_there(ranges->PartOf(i, part_count), ranges->pieces[i])) complete = i;
+        (*codes)[static_cast<size_t>(id)].missing_parts =
+            static_cast<uint8_t>(complete == 0 ? part_count : ranges->pieces.size() - complete);
+        return {};
+      });
+}
+
 // Returns an entry for each LF image of the store, indexed by its id. An LF image without an
 // encoded image has an entry that is not listed.
 Result<std::vector<PackedCode>> ReadCodes(OpenedStore* store) {
@@ -150,6 +183,7 @@ Result<std::vector<PackedCode>> ReadCodes(OpenedStore* store) {
     if (codes[i].is_left_out && codes[i].bytes > 0)
       return store->settings.Damaged(fmt::format("LF image {} is both encoded and left out", i));
   }
+  LF_RETURN_IF_ERROR(FindMissingParts(store, &codes));
   return codes;
 }
 
@@ -173,9 +207,33 @@ Result<OpenBlobs> WithSelect(int shard, Database database) {
   return OpenBlobs{shard, std::move(database), std::move(select), std::move(fronts)};
 }
 
+// Reads which parts of a store by resolution are there, and how many LF images they lack.
+Result<void> ReadParts(OpenedStore* store, PackedStoreFacts* facts) {
+  LF_ASSIGN_OR_RETURN(const std::vector<uint64_t> found,
+                      FoundPartBytes(store->database.name(), store->settings));
+  if (found.empty()) return {};
+  facts->part_count = found.size();
+  facts->found_parts = static_cast<size_t>(
+      std::count_if(found.begin(), found.end(), [](uint64_t n) { return n > 0; }));
+  LF_ASSIGN_OR_RETURN(const std::vector<uint64_t> stated, StatedPartBytes(store->settings));
+  if (found == stated) return {};
+  LF_ASSIGN_OR_RETURN(const std::vector<PackedCode> codes, ReadCodes(store));
+  const size_t missing = facts->part_count - facts->found_parts;
+  facts->cut_count =
+      static_cast<size_t>(std::count_if(codes.begin(), codes.end(), [&](const PackedCode& code) {
+        return code.missing_parts > missing;
+      }));
+  return {};
+}
+
 }  // namespace
 
 Result<OpenedStore> OpenComplete(const fs::path& path) {
+  if (!StoreOfPart(path).empty())
+    return InputError(fmt::format(
+        "{}: is a part of a packed store: give the store's file, which has the same name without "
+        "its last three characters before {}",
+        path.string(), kStoreExtension));
   LF_ASSIGN_OR_RETURN(Database database, OpenStoreDatabase(path));
   LF_ASSIGN_OR_RETURN(Settings settings, Settings::Read(database, kStoreFormat.name));
   if (settings.Text("state") == kUnfinished)
@@ -239,6 +297,7 @@ Result<PackedStoreFacts> ReadPackedStore(const fs::path& path) {
   facts.source = settings.Text("light_field");
   facts.codec = settings.Text("codec");
   facts.written_by = settings.Text("written_by");
+  LF_ASSIGN_OR_RETURN(facts.films, FilmsOf(settings));
   LF_ASSIGN_OR_RETURN(const double shards, settings.Number("shards", 0, kMostShards));
   facts.shard_count = static_cast<size_t>(shards);
   LF_ASSIGN_OR_RETURN(light_field.intrinsics, ReadIntrinsics(settings, &store.database));
@@ -247,6 +306,7 @@ Result<PackedStoreFacts> ReadPackedStore(const fs::path& path) {
   LF_ASSIGN_OR_RETURN(const std::vector<bool> left_out,
                       ReadMarks(&store, kLeftOutName, light_field.size()));
   facts.left_out_count = static_cast<size_t>(std::count(left_out.begin(), left_out.end(), true));
+  LF_RETURN_IF_ERROR(ReadParts(&store, &facts));
   // Checks all shards now, so that a missing one is found before the first LF image is loaded.
   for (int number = 1; number <= static_cast<int>(facts.shard_count); ++number)
     LF_RETURN_IF_ERROR(OpenShardOf(path, settings.Text("store"), number));
@@ -257,6 +317,7 @@ std::vector<fs::path> FilesOf(const fs::path& path, const PackedStoreFacts& fact
   std::vector<fs::path> files = {path};
   for (size_t shard = 1; shard <= facts.shard_count; ++shard)
     files.push_back(ShardPath(path, static_cast<int>(shard)));
+  for (size_t part = 0; part < facts.found_parts; ++part) files.push_back(PartPath(path, part));
   return files;
 }
 
@@ -273,6 +334,11 @@ Result<DisplayLevels> ReadDisplayLevels(const fs::path& path) {
 Result<std::string> ReadCodecSettings(const fs::path& path) {
   LF_ASSIGN_OR_RETURN(const OpenedStore store, OpenComplete(path));
   return store.settings.Text("codec");
+}
+
+Result<std::optional<StoreFilms>> ReadStoreFilms(const fs::path& path) {
+  LF_ASSIGN_OR_RETURN(const OpenedStore store, OpenComplete(path));
+  return FilmsOf(store.settings);
 }
 
 Result<LightFieldIdentity> ReadWholeIdentity(const fs::path& path) {
@@ -319,9 +385,11 @@ struct PackedCodeReader::State {
   fs::path path;
   std::string store;  // the store's id
   int shard_count = 0;
-  std::deque<OpenBlobs> open;  // open files, the most recently opened at the end
-  Statement* last = nullptr;   // SQL command whose row Read() returned; null: none
-  std::string front;           // bytes that ReadFront() returned
+  std::optional<PartSetReader> parts;  // set if the store is by resolution
+  std::deque<OpenBlobs> open;          // open files, the most recently opened at the end
+  Statement* last = nullptr;           // SQL command whose row Read() returned; null: none
+  std::string front;                   // bytes that ReadFront() returned, or all bytes of parts
+  std::string mask;                    // mask of parts
 
   Result<OpenBlobs> OpenShard(int number) const;
   Result<OpenBlobs*> At(int shard);
@@ -355,7 +423,11 @@ Result<PackedCodeReader> PackedCodeReader::Open(const fs::path& path) {
   state->store = store.settings.Text("store");
   LF_ASSIGN_OR_RETURN(const double shards, store.settings.Number("shards", 0, kMostShards));
   state->shard_count = static_cast<int>(shards);
-  if (state->shard_count == 0) {
+  LF_ASSIGN_OR_RETURN(const size_t part_count, PlannedParts(store.settings));
+  if (part_count > 0) {
+    LF_ASSIGN_OR_RETURN(state->parts,
+                        PartSetReader::Open(path, std::move(store.database), store.settings));
+  } else if (state->shard_count == 0) {
     LF_ASSIGN_OR_RETURN(OpenBlobs blobs, WithSelect(0, std::move(store.database)));
     state->open.push_back(std::move(blobs));
   }
@@ -376,6 +448,15 @@ Result<OpenBlobs*> PackedCodeReader::State::FileOf(const PackedCode& code) {
 Result<std::optional<PackedCodeReader::Front>> PackedCodeReader::ReadFront(const PackedCode& code,
                                                                            size_t left_out) {
   LF_CHECK(left_out > 0);
+  if (state_->parts) {
+    LF_ASSIGN_OR_RETURN(const ImageRanges ranges, state_->parts->RangesOf(code.id, code.bytes));
+    const size_t front_count = ranges.pieces.size() - 1;
+    if (front_count == 0) return std::optional<Front>();
+    const size_t left_out_here = std::min(left_out, front_count);
+    LF_RETURN_IF_ERROR(
+        state_->parts->ReadCode(ranges, ranges.pieces.size() - left_out_here, &state_->front));
+    return std::optional<Front>({state_->front, left_out_here});
+  }
   LF_ASSIGN_OR_RETURN(OpenBlobs* const blobs, state_->FileOf(code));
   if (!blobs->select_fronts) return std::optional<Front>();
   Statement& select = *blobs->select_fronts;
@@ -400,6 +481,12 @@ Result<std::optional<PackedCodeReader::Front>> PackedCodeReader::ReadFront(const
 }
 
 Result<PackedCodeReader::Bytes> PackedCodeReader::Read(const PackedCode& code) {
+  if (state_->parts) {
+    LF_ASSIGN_OR_RETURN(const ImageRanges ranges, state_->parts->RangesOf(code.id, code.bytes));
+    LF_RETURN_IF_ERROR(state_->parts->ReadCode(ranges, ranges.pieces.size(), &state_->front));
+    LF_RETURN_IF_ERROR(state_->parts->ReadMask(ranges, &state_->mask));
+    return Bytes{state_->front, state_->mask};
+  }
   LF_ASSIGN_OR_RETURN(OpenBlobs* const blobs, state_->FileOf(code));
   Statement& select = blobs->select;
   select.Bind(0, int64_t{code.id});

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads the file of a packed store: the encoded LF images of a light field with their calibration,
 // in one SQLite file (doc/formats/packed_store.md). A large store may keep its encoded images in
-// further files, its shards. packed_store_writer.h writes all of them. Here, encoded images are
-// bytes in any format; storage/load/packed_store.h decodes them.
+// further files, its shards. A store by resolution keeps them in parts: the smallest pictures of
+// all LF images in the first file, and the bytes that double their resolution in each further one.
+// packed_store_writer.h writes all of them. Here, encoded images are bytes in any format;
+// storage/load/packed_store.h decodes them.
 #pragma once
 
 #include <cstdint>
@@ -54,6 +56,15 @@ std::vector<std::filesystem::path> PackedStoresIn(const std::filesystem::path& f
 // Stands for the number in the whole light field of a virtual LF image, which has none.
 inline constexpr uint32_t kNoWholeId = UINT32_MAX;
 
+// The films that a store was encoded for: its LF images have thresholds of their own, by how much
+// these films use each of them.
+struct StoreFilms {
+  std::vector<std::string> lenses;  // of each film, HashOfLenses() (render/state/run_inputs.h)
+  std::string lens_weights;         // NameOf(LensWeights)
+  size_t frame_count = 0;           // number of frames that were considered, of all films together
+  std::string source = {};          // PackedStoreFacts::source; set when a store is read
+};
+
 // Everything in a packed store but the encoded images.
 struct PackedStoreFacts {
   LightField light_field;    // LF cameras of the store; `folder` is the store's file; no mask
@@ -63,9 +74,16 @@ struct PackedStoreFacts {
   std::string source;               // LIGHTFIELD or packages that the store was made from
   std::string codec;                // settings of the codec, in words
   std::string written_by;
+  std::optional<StoreFilms> films;         // set if the store was encoded for certain films
   std::optional<DensifiedPlan> densified;  // set if the store is densified
   size_t shard_count = 0;  // number of shards; 0: the encoded images are in the store's file itself
   size_t left_out_count = 0;  // number of LF images that were left out on purpose
+  size_t part_count = 0;      // number of parts; 0: the store is not by resolution
+  size_t found_parts =
+      0;  // number of the first parts that are there; at least 1 if there are parts
+  // Number of LF images that were encoded, but of which the parts that are there lack bytes,
+  // because the copy of a part is incomplete.
+  size_t cut_count = 0;
 
   // Returns true if the store was made by a program that kept only the LF cameras of the LF images
   // that packages need.
@@ -73,10 +91,10 @@ struct PackedStoreFacts {
 };
 
 // Reads everything in a packed store but the encoded images. kInput: the file cannot be read, is no
-// complete packed store, is damaged, has another version, or lacks a shard.
+// complete packed store, is damaged, has another version, or lacks a shard or its first part.
 Result<PackedStoreFacts> ReadPackedStore(const std::filesystem::path& path);
 
-// Returns the store's file, followed by its shards.
+// Returns the store's file, followed by its shards or by the parts that are there.
 std::vector<std::filesystem::path> FilesOf(const std::filesystem::path& path,
                                            const PackedStoreFacts& facts);
 
@@ -96,6 +114,9 @@ Result<DisplayLevels> ReadDisplayLevels(const std::filesystem::path& path);
 Result<std::string> ReadCodecSettings(const std::filesystem::path& path);
 inline constexpr std::string_view kLosslessCodec = "lossless";
 
+// Returns PackedStoreFacts::films without reading the other facts.
+Result<std::optional<StoreFilms>> ReadStoreFilms(const std::filesystem::path& path);
+
 // Returns PackedStoreFacts::whole without reading the other facts.
 Result<LightFieldIdentity> ReadWholeIdentity(const std::filesystem::path& path);
 
@@ -108,7 +129,10 @@ struct PackedCode {
   StoredValues values = StoredValues::kUint8;
   bool is_virtual : 1 = false;   // true if the store marks the LF image as virtual
   bool is_left_out : 1 = false;  // true if the LF image was left out of the store on purpose
-  PixelRect rect;                // pixels of the LF image that are encoded
+  // Number of the finest parts of a store by resolution without which the LF image must be loaded,
+  // because a part is missing or was cut off; 0: all bytes are there.
+  uint8_t missing_parts : 4 = 0;
+  PixelRect rect;      // pixels of the LF image that are encoded
   uint64_t bytes = 0;  // size of the encoded pixels and mask; 0: the store lacks them, because the
                        // LF image could not be read, or was left out
 
@@ -150,8 +174,8 @@ class PackedCodeReader {
     std::string_view mask;  // encoded mask or opacities; empty: the LF image has none
   };
   // Reads an encoded image, which must be in the store. The bytes are valid until the next call.
-  // kInput, naming the file: the checksum shows damage, or a shard is missing or belongs to another
-  // store.
+  // kInput, naming the file: the checksum shows damage, or a shard or part is missing, belongs to
+  // another store, or was cut off.
   Result<Bytes> Read(const PackedCode& code);
 
   struct Front {
@@ -160,7 +184,7 @@ class PackedCodeReader {
   };
   // Reads the first bytes of an encoded image without the rest: its longest front but the last
   // `left_out`, which is at least 1, or its shortest front. nullopt: the store has no fronts of the
-  // image. The bytes are valid until the next call of this function. kInput as Read().
+  // image. The bytes are valid until the next call of this class. kInput as Read().
   Result<std::optional<Front>> ReadFront(const PackedCode& code, size_t left_out);
 
  private:

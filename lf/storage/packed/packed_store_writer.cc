@@ -16,6 +16,8 @@
 #include "lf/core/file_lock.h"
 #include "lf/storage/packed/code_fronts.h"
 #include "lf/storage/packed/packed_format.h"
+#include "lf/storage/packed/part_file.h"
+#include "lf/storage/packed/part_set.h"
 #include "lf/storage/packed/plan_settings.h"
 #include "lf/storage/packed/plane_table.h"
 #include "lf/storage/packed/store_tables.h"
@@ -56,6 +58,8 @@ struct PackedStoreWriter::State {
   std::optional<Database> shard;  // the last shard, to which images are added
   std::optional<Statement> insert_blob;
   std::optional<Statement> insert_fronts;  // set if insert_blob is
+  std::optional<PartSetWriter> parts;      // set if the store is by resolution
+  std::optional<Statement> insert_ranges;  // set if `parts` is
   size_t batch_size = 0;
   std::chrono::steady_clock::time_point batch_begin;
   std::optional<Error> failed;
@@ -68,7 +72,9 @@ struct PackedStoreWriter::State {
   void Close() {
     insert_blob.reset();
     insert_fronts.reset();
+    insert_ranges.reset();
     shard.reset();
+    parts.reset();
     insert_code.reset();
     planes.reset();
     database.reset();
@@ -76,14 +82,18 @@ struct PackedStoreWriter::State {
 
   Result<void> Read(const Settings& settings);
   Result<void> TakeShardsBack() const;
-  Result<void> CheckIsFree(const fs::path& shard_path) const;
+  Result<void> CheckIsFree(const fs::path& file, const std::string& of) const;
+  Result<void> OpenParts(const Settings& settings);
   Result<void> OpenShard(int number);
   Result<void> BeginInBatch();
   Result<void> PrepareFronts();
+  Result<void> InsertBlob(LfImageId id, const CodedImage& image);
+  Result<void> InsertRanges(LfImageId id, const CodedImage& image);
   Result<void> Insert(LfImageId id, const CodedImage& image);
   Result<void> AddPlane(LfImageId id, PlaneKind kind, PlaneSize size, std::string_view code);
   Result<void> CommitIfDue();
   Result<void> CommitBatch();
+  Result<void> WritePartBytes();
   Result<void> FinishFiles();
   // Returns `result`, and remembers an error, after which nothing can be added.
   Result<void> Kept(Result<void> result) {
@@ -131,17 +141,36 @@ Result<void> PackedStoreWriter::State::TakeShardsBack() const {
   return {};
 }
 
-// Returns kUsage if the path of a shard is taken by a file that is a shard neither of this store
-// nor of the store that is replaced.
-Result<void> PackedStoreWriter::State::CheckIsFree(const fs::path& shard_path) const {
+// Returns kUsage if the path of a shard or part is taken by a file that belongs neither to this
+// store nor to the store that is replaced.
+//   of  id of the store that the file belongs to
+Result<void> PackedStoreWriter::State::CheckIsFree(const fs::path& file,
+                                                   const std::string& of) const {
   std::error_code error;
-  if (!fs::exists(fs::symlink_status(shard_path, error))) return {};
-  const std::string of = StoreOfShard(shard_path);
+  if (!fs::exists(fs::symlink_status(file, error))) return {};
   if (!of.empty() && (of == store || of == replaced)) return {};
   return UsageError(fmt::format(
-      "{}: a shard of the new store would replace this file, which belongs to "
+      "{}: a file of the new store would replace this file, which belongs to "
       "no store of this name: give the store another name ({{output}}), or remove the file",
-      shard_path.string()));
+      file.string()));
+}
+
+// Opens the parts of a store by resolution, and takes those back that already have their final
+// names, as TakeShardsBack() does for shards.
+Result<void> PackedStoreWriter::State::OpenParts(const Settings& settings) {
+  LF_ASSIGN_OR_RETURN(const size_t part_count, PlannedParts(settings));
+  LF_ASSIGN_OR_RETURN(const std::vector<uint64_t> bytes, StatedPartBytes(settings));
+  for (size_t number = 0; number < part_count; ++number) {
+    const fs::path part = PartPath(path, number), unfinished = UnfinishedPath(part);
+    LF_RETURN_IF_ERROR(CheckIsFree(part, StoreOfPart(part)));
+    std::error_code error;
+    if (!fs::exists(unfinished, error) && StoreOfPart(part) == store)
+      LF_RETURN_IF_ERROR(RenameFlushed(part, unfinished));
+  }
+  LF_ASSIGN_OR_RETURN(parts, PartSetWriter::Open(path, store, part_count, bytes));
+  LF_ASSIGN_OR_RETURN(insert_ranges,
+                      database->Prepare("insert or replace into ranges values (?, ?)"));
+  return {};
 }
 
 // Opens a shard for writing, and makes it if it does not exist.
@@ -155,7 +184,7 @@ Result<void> PackedStoreWriter::State::OpenShard(int number) {
   insert_fronts.reset();
   shard.reset();
   const fs::path shard_path = ShardPath(path, number);
-  LF_RETURN_IF_ERROR(CheckIsFree(shard_path));
+  LF_RETURN_IF_ERROR(CheckIsFree(shard_path, StoreOfShard(shard_path)));
   LF_ASSIGN_OR_RETURN(Database opened,
                       Database::OpenToAppend(UnfinishedPath(shard_path), kShardFormat));
   LF_ASSIGN_OR_RETURN(const bool has_tables, HasTables(&opened));
@@ -204,6 +233,26 @@ Result<void> PackedStoreWriter::State::Insert(LfImageId id, const CodedImage& im
     bytes_in_shard = 0;
   }
   LF_RETURN_IF_ERROR(BeginInBatch());
+  LF_RETURN_IF_ERROR(parts ? InsertRanges(id, image) : InsertBlob(id, image));
+  insert_code->Bind(0, int64_t{id.value}).Bind(1, int64_t{shard ? shard_count : 0});
+  insert_code->Bind(2, std::string_view(kKindNames[static_cast<int>(image.values)]));
+  insert_code->Bind(3, int64_t{image.rect.x_begin}).Bind(4, int64_t{image.rect.y_begin});
+  insert_code->Bind(5, int64_t{image.rect.x_end}).Bind(6, int64_t{image.rect.y_end});
+  insert_code->Bind(7, static_cast<int64_t>(bytes));
+  insert_code->Bind(8, static_cast<int64_t>(image.source_bytes));
+  LF_RETURN_IF_ERROR(insert_code->Run());
+  bytes_in_shard += bytes;
+  has[id.value] = true;
+  return CommitIfDue();
+}
+
+Result<void> PackedStoreWriter::State::InsertRanges(LfImageId id, const CodedImage& image) {
+  LF_ASSIGN_OR_RETURN(const ImageRanges ranges, parts->Add(image));
+  insert_ranges->Bind(0, int64_t{id.value}).BindBlob(1, TextOfRanges(ranges));
+  return insert_ranges->Run();
+}
+
+Result<void> PackedStoreWriter::State::InsertBlob(LfImageId id, const CodedImage& image) {
   if (!insert_blob) {
     // Uses "or replace", because the rows may exist: an earlier program may have committed it to a
     // shard, and ended before it committed the row of the table `codes` to the store.
@@ -225,16 +274,7 @@ Result<void> PackedStoreWriter::State::Insert(LfImageId id, const CodedImage& im
     insert_fronts->BindBlob(1, CodeOfFronts(image.code, image.front_ends));
     LF_RETURN_IF_ERROR(insert_fronts->Run());
   }
-  insert_code->Bind(0, int64_t{id.value}).Bind(1, int64_t{shard ? shard_count : 0});
-  insert_code->Bind(2, std::string_view(kKindNames[static_cast<int>(image.values)]));
-  insert_code->Bind(3, int64_t{image.rect.x_begin}).Bind(4, int64_t{image.rect.y_begin});
-  insert_code->Bind(5, int64_t{image.rect.x_end}).Bind(6, int64_t{image.rect.y_end});
-  insert_code->Bind(7, static_cast<int64_t>(bytes));
-  insert_code->Bind(8, static_cast<int64_t>(image.source_bytes));
-  LF_RETURN_IF_ERROR(insert_code->Run());
-  bytes_in_shard += bytes;
-  has[id.value] = true;
-  return CommitIfDue();
+  return {};
 }
 
 Result<void> PackedStoreWriter::State::AddPlane(LfImageId id, PlaneKind kind, PlaneSize size,
@@ -257,7 +297,8 @@ Result<void> PackedStoreWriter::State::CommitIfDue() {
   return CommitBatch();
 }
 
-// Commits the encoded images in the shard before the rows of the store that refer to them.
+// Commits the encoded images in the shard or the parts before the rows of the store that refer to
+// them.
 Result<void> PackedStoreWriter::State::CommitBatch() {
   if (batch_size == 0) return {};
   batch_size = 0;
@@ -266,21 +307,49 @@ Result<void> PackedStoreWriter::State::CommitBatch() {
     LF_RETURN_IF_ERROR(database->Execute(
         fmt::format("update settings set value = '{}' where key = 'shards'", shard_count)));
   }
+  if (parts) {
+    LF_RETURN_IF_ERROR(parts->Flush());
+    LF_RETURN_IF_ERROR(WritePartBytes());
+  }
   return database->Execute("commit");
 }
 
+Result<void> PackedStoreWriter::State::WritePartBytes() {
+  return database->Execute(fmt::format("update settings set value = '{}' where key = '{}'",
+                                       parts->TextOfBytes(), kPartBytesKey));
+}
+
 Result<void> PackedStoreWriter::State::FinishFiles() {
+  const size_t planned_parts = parts ? parts->count() : 0;
+  if (parts) {
+    LF_RETURN_IF_ERROR(parts->Flush());
+    parts->DropUnused();
+    LF_RETURN_IF_ERROR(WritePartBytes());
+  }
+  const size_t part_count = parts ? parts->count() : 0;
   LF_RETURN_IF_ERROR(database->Execute(
       fmt::format("update settings set value = '{}' where key = 'state'", kComplete)));
   Close();
+  std::error_code ignored;
+  for (size_t n = 0; n < planned_parts; ++n) {
+    const fs::path part = PartPath(path, n);
+    if (n >= part_count) {
+      fs::remove(UnfinishedPath(part), ignored);
+      continue;
+    }
+    LF_RETURN_IF_ERROR(CheckIsFree(part, StoreOfPart(part)));
+    LF_RETURN_IF_ERROR(RenameFlushed(UnfinishedPath(part), part));
+  }
   for (int n = 1; n <= shard_count; ++n) {
-    LF_RETURN_IF_ERROR(CheckIsFree(ShardPath(path, n)));
+    const fs::path of_shard = ShardPath(path, n);
+    LF_RETURN_IF_ERROR(CheckIsFree(of_shard, StoreOfShard(of_shard)));
     LF_RETURN_IF_ERROR(RenameFlushed(UnfinishedPath(ShardPath(path, n)), ShardPath(path, n)));
   }
   LF_RETURN_IF_ERROR(RenameFlushed(UnfinishedPath(path), path));
-  // Removes the shards of the replaced store whose numbers are beyond the last new shard.
+  // Removes the shards and parts of the replaced store whose numbers are beyond the new ones.
   if (replaced.empty()) return {};
-  std::error_code ignored;
+  for (size_t n = part_count; n < kMostParts; ++n)
+    if (StoreOfPart(PartPath(path, n)) == replaced) fs::remove(PartPath(path, n), ignored);
   for (int n = shard_count + 1; n <= kMostShards && StoreOfShard(ShardPath(path, n)) == replaced;
        ++n)
     fs::remove(ShardPath(path, n), ignored);
@@ -311,9 +380,14 @@ Result<PackedStoreWriter> PackedStoreWriter::Open(const fs::path& path,
   state->replaced = StoreIdOf(path);
   state->has.resize(light_field.size());
   state->source_bytes.resize(light_field.size());
-  // Checks the name of the first shard now, and not after all work is done.
-  if (plan.shard_bytes > 0 && !IsUnfinished(path))
-    LF_RETURN_IF_ERROR(state->CheckIsFree(ShardPath(path, 1)));
+  // Checks the names of the first shard and of the parts now, and not after all work is done.
+  if (!IsUnfinished(path)) {
+    const fs::path first_shard = ShardPath(path, 1);
+    if (plan.shard_bytes > 0)
+      LF_RETURN_IF_ERROR(state->CheckIsFree(first_shard, StoreOfShard(first_shard)));
+    for (size_t n = 0; n < plan.part_count; ++n)
+      LF_RETURN_IF_ERROR(state->CheckIsFree(PartPath(path, n), StoreOfPart(PartPath(path, n))));
+  }
   LF_ASSIGN_OR_RETURN(Database database,
                       Database::OpenToAppend(UnfinishedPath(path), kStoreFormat));
   LF_ASSIGN_OR_RETURN(const bool has_tables, HasTables(&database));
@@ -334,6 +408,7 @@ Result<PackedStoreWriter> PackedStoreWriter::Open(const fs::path& path,
         state->planes,
         PlaneTable::Open(settings, light_field, plan.densified->plane_divisor, &*state->database));
   }
+  if (plan.part_count > 0) LF_RETURN_IF_ERROR(state->OpenParts(settings));
   if (state->shard_count > 0) {
     LF_RETURN_IF_ERROR(state->TakeShardsBack());
     LF_RETURN_IF_ERROR(state->OpenShard(state->shard_count));

@@ -31,9 +31,15 @@ struct PackedStorePlan {
   std::vector<PixelRect> rects;
   std::string codec;                                 // all settings of the encoder, in words
   std::optional<DisplayLevels> display_levels = {};  // set if images are encoded as kDisplay16
+  std::optional<StoreFilms> films = {};  // set if `codec` has thresholds for certain films
   // Size of a shard. If it is not 0, the encoded images are in STORE-0001.lfs, STORE-0002.lfs, ...
   // of about this size, beside STORE.lfs, which has everything else. 0: the store is one file.
   uint64_t shard_bytes = 0;
+  // Makes a store by resolution: the encoded images are in STORE-r0.lfs, STORE-r1.lfs, ..., at most
+  // this number of files, of which each doubles the resolution of those before. From 1 to 8, and
+  // one more than the most fronts of an LF image that are of use by themselves. 0: the store is not
+  // by resolution. Not together with shards, and not for densified stores.
+  size_t part_count = 0;
   // Makes a densified store. Must be set if an LF image is virtual.
   std::optional<DensifiedPlan> densified = {};
   // `source` and `version` are for information only. They may differ when an unfinished store is
@@ -59,7 +65,9 @@ struct CodedImage {
 };
 
 // Writes a packed store. Until Finish() its file is STORE.lfs.unfinished, which no reader accepts
-// as a store, and its shards are STORE-0001.lfs.unfinished and so on. An older store of the final
+// as a store, and its shards are STORE-0001.lfs.unfinished and so on, or its parts
+// STORE-r0.lfs.unfinished and so on. The bytes of LF images are in the parts in the order in which
+// they are added. An older store of the final
 // name stays unchanged until Finish(). The lock STORE.lfs.lock allows one writer at a time.
 class PackedStoreWriter {
  public:
@@ -69,16 +77,17 @@ class PackedStoreWriter {
 
   // Begins a new store of the LF images of `light_field`, which has at least one LF image and need
   // not outlive the call. Takes the lock if `lock` is not given. kUsage: there is an unfinished
-  // store, or a file with the name of the first shard that does not belong to the store that is
-  // replaced; or a virtual LF image has the name of another LF image.
-  // kOutput: the disk fails, or another writer holds the lock.
+  // store, or a file with the name of the first shard or of a part that does not belong to the
+  // store that is replaced; or a virtual LF image has the name of another LF image. kOutput: the
+  // disk fails, or another writer holds the lock.
   static Result<PackedStoreWriter> Create(const std::filesystem::path& path,
                                           const LightField& light_field,
                                           const PackedStorePlan& plan,
                                           std::optional<FileLock> lock = {});
   // Resumes an unfinished store. If there is none, or it has no tables yet, begins a new one.
   // kUsage: the unfinished store was begun for other LF images or settings (the message names the
-  // first difference). kInput: its file is no packed store, is damaged, or lacks a shard. kOutput
+  // first difference). kInput: its file is no packed store, is damaged, or lacks a shard or a part.
+  // kOutput
   // as Create().
   static Result<PackedStoreWriter> Resume(const std::filesystem::path& path,
                                           const LightField& light_field,
@@ -125,8 +134,8 @@ class PackedStoreWriter {
   // Commits the LF images and planes that were added, so that they are on the disk permanently.
   Result<void> Commit();
   // Commits, marks the store as complete and gives it its final name, replacing an older store.
-  // Shards are renamed first. LF images that were not added are listed without an encoded image.
-  // Nothing may be called afterwards.
+  // Shards and parts are renamed first. LF images that were not added are listed without an encoded
+  // image. Nothing may be called afterwards.
   Result<void> Finish();
   // Removes all that was written. Is called instead of Finish().
   void Abandon();

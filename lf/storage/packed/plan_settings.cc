@@ -2,14 +2,18 @@
 #include "lf/storage/packed/plan_settings.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <span>
+#include <sstream>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "lf/core/hash.h"
 #include "lf/storage/packed/packed_format.h"
+#include "lf/storage/packed/part_set.h"
 #include "lf/storage/packed/plane_table.h"
 #include "lf/storage/tables/stored_numbers.h"
 
@@ -50,7 +54,11 @@ constexpr SettingWords kSettingWords[] = {
      false},
     {"images.whole_ids", "another part of the light field's LF images", false},
     {"images.rects", "other parts of the LF images' pixels", false},
+    {"film.lenses", "the packages of other films", false},
+    {"film.lens_weights", "lens weights of", true},
+    {"film.frames", "a number of frames of", true},
     {"shard_bytes", "a {shard_size}, in bytes, of", true},
+    {kPartsKey, "a number of files for resolutions ({by_resolution}) of", true},
     {kDensifiedKey, "settings of the densifier of", true},
     {"response", "another response curve", false}};
 
@@ -70,17 +78,26 @@ std::string TextOfDifference(std::string key, const std::string& begun, const st
 
 SettingList SettingsOfPlan(const LightField& light_field, const PackedStorePlan& plan) {
   const LightFieldIdentity images = IdentityInStore(light_field);
-  SettingList settings = {{"light_field.images", fmt::format("{}", plan.whole.image_count)},
-                          {"light_field.names", plan.whole.names},
-                          {"light_field.calibration", plan.whole.calibration},
-                          {"images", fmt::format("{}", images.image_count)},
-                          {"images.names", images.names},
-                          {"images.calibration", images.calibration},
-                          {"images.whole_ids", HashOfIds(plan.whole_ids)},
-                          {"images.rects", HashOfRects(plan.rects)},
-                          {"codec", plan.codec},
-                          {"display_levels", TextOf(plan.display_levels)},
-                          {"shard_bytes", fmt::format("{}", plan.shard_bytes)}};
+  SettingList settings = {
+      {"light_field.images", fmt::format("{}", plan.whole.image_count)},
+      {"light_field.names", plan.whole.names},
+      {"light_field.calibration", plan.whole.calibration},
+      {"images", fmt::format("{}", images.image_count)},
+      {"images.names", images.names},
+      {"images.calibration", images.calibration},
+      {"images.whole_ids", HashOfIds(plan.whole_ids)},
+      {"images.rects", HashOfRects(plan.rects)},
+      {"codec", plan.codec},
+      {"display_levels", TextOf(plan.display_levels)},
+      {"shard_bytes", fmt::format("{}", plan.shard_bytes)},
+      {kPartsKey, plan.part_count > 0 ? fmt::format("{}", plan.part_count) : ""}};
+  if (plan.films) {
+    const StoreFilms& films = *plan.films;
+    settings.insert(settings.end(),
+                    {{"film.lenses", fmt::format("{}", fmt::join(films.lenses, " "))},
+                     {"film.lens_weights", films.lens_weights},
+                     {"film.frames", fmt::format("{}", films.frame_count)}});
+  }
   if (plan.densified) {
     const SettingList densified = SettingsOf(*plan.densified);
     settings.insert(settings.begin(), densified.begin(), densified.end());
@@ -88,6 +105,17 @@ SettingList SettingsOfPlan(const LightField& light_field, const PackedStorePlan&
   const SettingList pixels = SettingsOfPixels(light_field);
   settings.insert(settings.end(), pixels.begin(), pixels.end());
   return settings;
+}
+
+Result<std::optional<StoreFilms>> FilmsOf(const Settings& settings) {
+  StoreFilms films;
+  std::istringstream lenses(settings.Text("film.lenses"));
+  for (std::string hash; lenses >> hash;) films.lenses.push_back(hash);
+  if (films.lenses.empty()) return std::optional<StoreFilms>();
+  films.lens_weights = settings.Text("film.lens_weights");
+  LF_ASSIGN_OR_RETURN(films.frame_count, settings.Whole("film.frames"));
+  films.source = settings.Text("light_field");
+  return std::optional(std::move(films));
 }
 
 std::optional<std::string> FirstDifference(const Settings& settings, const LightField& light_field,

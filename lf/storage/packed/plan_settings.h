@@ -14,6 +14,10 @@ namespace lf {
 // Returns the settings that an unfinished store must share with the plan by which it is resumed.
 SettingList SettingsOfPlan(const LightField& light_field, const PackedStorePlan& plan);
 
+// Returns the films that the settings of a store state; nullopt if they state none. kInput: damaged
+// settings.
+Result<std::optional<StoreFilms>> FilmsOf(const Settings& settings);
+
 // Returns the first difference between the settings of a store and a plan, as text that continues
 // "begun with": "codec default, levels 4, threshold 3, but now it is ...". Returns none if there is
 // no difference.

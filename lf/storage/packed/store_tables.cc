@@ -11,6 +11,7 @@
 
 #include "lf/core/check.h"
 #include "lf/storage/packed/packed_format.h"
+#include "lf/storage/packed/part_set.h"
 #include "lf/storage/packed/plan_settings.h"
 #include "lf/storage/tables/calibration_tables.h"
 
@@ -65,6 +66,8 @@ Result<void> CheckPlan(const LightField& light_field, const PackedStorePlan& pla
   LF_CHECK(plan.whole_ids.empty() || plan.whole_ids.size() == light_field.size());
   LF_CHECK(plan.rects.empty() || plan.rects.size() == light_field.size());
   LF_CHECK(!plan.densified || !plan.LeavesOut());
+  LF_CHECK(plan.part_count <= kMostParts);
+  LF_CHECK(plan.part_count == 0 || (plan.shard_bytes == 0 && !plan.densified));
   std::unordered_map<std::string_view, int> uses;
   for (uint32_t i = 0; i < light_field.size(); ++i) {
     const bool is_virtual = light_field.cameras[i].is_virtual;
@@ -83,15 +86,18 @@ Result<void> CheckPlan(const LightField& light_field, const PackedStorePlan& pla
 
 Result<void> MakeStoreTables(const LightField& light_field, const PackedStorePlan& plan,
                              Database* database) {
+  const bool is_one_file = plan.shard_bytes == 0 && plan.part_count == 0;
   LF_RETURN_IF_ERROR(database->Execute(
-      fmt::format("begin; {}{}{}{}{}{}{}", kSettingsTable, kIntrinsicsTable, kStoreTables,
-                  plan.shard_bytes > 0 ? "" : kBlobsTable, plan.shard_bytes > 0 ? "" : kFrontsTable,
-                  plan.densified ? kDensifiedTables : "", plan.LeavesOut() ? kLeftOutTable : "")));
+      fmt::format("begin; {}{}{}{}{}{}{}{}", kSettingsTable, kIntrinsicsTable, kStoreTables,
+                  is_one_file ? kBlobsTable : "", is_one_file ? kFrontsTable : "",
+                  plan.part_count > 0 ? kRangesTable : "", plan.densified ? kDensifiedTables : "",
+                  plan.LeavesOut() ? kLeftOutTable : "")));
   LF_RETURN_IF_ERROR(WriteSettings({{"written_by", "lfrendertools " + plan.version},
                                     {"light_field", plan.source},
                                     {"state", kUnfinished},
                                     {"store", NewStoreId()},
-                                    {"shards", "0"}},
+                                    {"shards", "0"},
+                                    {kPartBytesKey, ""}},
                                    database));
   LF_RETURN_IF_ERROR(WriteSettings(SettingsOfPlan(light_field, plan), database));
   LF_RETURN_IF_ERROR(WriteIntrinsics(light_field.intrinsics, database));

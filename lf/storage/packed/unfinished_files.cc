@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "lf/storage/packed/packed_format.h"
+#include "lf/storage/packed/part_file.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -37,6 +38,11 @@ void RemoveUnfinishedFiles(const fs::path& path) {
   const std::string store = StoreIdOf(UnfinishedPath(path));
   RemoveWithJournal(UnfinishedPath(path));
   std::error_code error;
+  for (size_t number = 0; number < kMostParts; ++number) {
+    const fs::path part = PartPath(path, number);
+    fs::remove(UnfinishedPath(part), error);
+    if (!store.empty() && StoreOfPart(part) == store) fs::remove(part, error);
+  }
   for (int n = 1; n <= kMostShards; ++n) {
     const fs::path shard = ShardPath(path, n), unfinished = UnfinishedPath(shard);
     const bool is_unfinished = fs::exists(unfinished, error);

@@ -13,8 +13,8 @@ std::string StoreIdOf(const std::filesystem::path& path);
 // Returns the id that a shard states for its store; empty if the file cannot be read as a shard.
 std::string StoreOfShard(const std::filesystem::path& path);
 
-// Removes an unfinished store and all its shards, both those with names of unfinished shards and
-// those that already have their final names.
+// Removes an unfinished store and all its shards or parts, both those with names of unfinished
+// files and those that already have their final names.
 void RemoveUnfinishedFiles(const std::filesystem::path& path);
 
 }  // namespace lf
