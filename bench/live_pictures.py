@@ -2,6 +2,7 @@
 """Runs lfvisualizer and asks it for live pictures, as its page does (doc/formats/page_data.md, POST live)."""
 import http.client
 import json
+import os
 import signal
 import struct
 import subprocess
@@ -9,6 +10,8 @@ import time
 import urllib.parse
 
 import numpy as np
+
+from measured import read_bytes_of
 
 
 class LiveServer:
@@ -63,6 +66,16 @@ class LiveServer:
     def seconds(self):
         """Returns the time since the program was started."""
         return time.monotonic() - self.started
+
+    def cpu_s(self):
+        """Returns the CPU time that the program has used so far."""
+        with open(f"/proc/{self.process.pid}/stat", encoding="ascii") as facts:
+            user, system = facts.read().rpartition(")")[2].split()[11:13]
+        return (int(user) + int(system)) / os.sysconf("SC_CLK_TCK")
+
+    def read_bytes(self):
+        """Returns the bytes that the program has read by system calls so far."""
+        return read_bytes_of(self.process.pid)
 
     def peak_mib(self):
         """Returns the largest memory that the program has had so far."""

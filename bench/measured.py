@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs one command and writes how much time, memory, files and disk it used, as JSON, into RESULT.
+"""Runs one command and writes how much time, memory, files and disk it used, and how many bytes it read, as JSON, into
+RESULT.
 
 usage: measured.py RESULT PERIOD_S FOLDER COMMAND...
 
@@ -36,13 +37,16 @@ def space_of(folder):
     return total
 
 
+def read_bytes_of(pid):
+    """Returns the bytes that a process has read by system calls, also one that has ended and is not yet waited for."""
+    with open(f"/proc/{pid}/io") as counts:
+        return next(int(line.split()[1]) for line in counts if line.startswith("rchar:"))
+
+
 def watch(pid, period_s, folder):
-    """Samples the process until it ends. Returns (status, usage, most open files, most bytes in the folder)."""
+    """Samples the process until it ends. Returns (most open files, most bytes in the folder)."""
     files = space = 0
-    while True:
-        ended, status, usage = os.wait4(pid, os.WNOHANG)
-        if ended:
-            return status, usage, files, space
+    while not os.waitid(os.P_PID, pid, os.WEXITED | os.WNOWAIT | os.WNOHANG):
         try:
             files = max(files, len(os.listdir(f"/proc/{pid}/fd")))
         except OSError:  # the process is ending
@@ -50,6 +54,7 @@ def watch(pid, period_s, folder):
         if folder != "-":
             space = max(space, space_of(folder))
         time.sleep(period_s)
+    return files, space
 
 
 def main():
@@ -64,13 +69,15 @@ def main():
         os._exit(127)
     files = space = 0
     if float(period_s) > 0:
-        status, usage, files, space = watch(pid, float(period_s), folder)
-    else:
-        _, status, usage = os.wait4(pid, 0)
+        files, space = watch(pid, float(period_s), folder)
+    os.waitid(os.P_PID, pid, os.WEXITED | os.WNOWAIT)
     seconds = time.monotonic() - begin
+    read_bytes = read_bytes_of(pid)
+    _, status, usage = os.wait4(pid, 0)
     with open(result, "w") as out:
         json.dump({"seconds": seconds, "cpu_s": usage.ru_utime + usage.ru_stime,
-                   "peak_bytes": usage.ru_maxrss * 1024, "open_files": files, "folder_bytes": space}, out)
+                   "peak_bytes": usage.ru_maxrss * 1024, "open_files": files, "folder_bytes": space,
+                   "read_bytes": read_bytes}, out)
     code = os.waitstatus_to_exitcode(status)
     return code if code >= 0 else 128 - code
 

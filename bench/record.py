@@ -136,6 +136,7 @@ def timed(words, watch=None, folder=None, codes=(0,)):
     """Runs a command, notes it, and returns its use of resources:
 
     seconds, cpu_s, peak_bytes     of this process alone (measured.py says why that is not obvious)
+    read_bytes                     by system calls, from files that are in memory as well
     open_files, folder_bytes       the most seen, every `watch` seconds, of its open files and of the bytes
                                    that `folder` takes on the disk; 0 without `watch`
     stdout                         its standard output

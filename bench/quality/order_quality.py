@@ -96,15 +96,21 @@ CAPTURES = {"shop": shop, "planar": truth("planar", "planar_d8_f20", "planar_d4_
             "band": truth("band", "band_d4_f40"), "cards": cards, "random": at_random, "dome": dome}
 
 
-def frame(bench, calibration, path, *options):
-    """Returns the first frame, in sRGB, and its number of LF images."""
+def light(bench, calibration, path, *options):
+    """Returns the light of the first frame, and its number of LF images."""
     out = bench.folder / "frames"
     results.call([bench.programs / "lfrenderer", calibration, path, "-o", out, "--frames", 1, "--format", "exr-float",
                   "-q", "--no-contact-sheet", "--overwrite", *options])
     report = json.loads((out / "report.json").read_text())
-    picture = quality.encoded(lens_weights.linear_exr(next(out.glob("frame_*.exr"))))
+    picture = lens_weights.linear_exr(next(out.glob("frame_*.exr")))
     shutil.rmtree(out)
     return picture, report["frames"][0]["lf_images"]
+
+
+def frame(bench, calibration, path, *options):
+    """Returns the first frame, in sRGB, and its number of LF images."""
+    picture, count = light(bench, calibration, path, *options)
+    return quality.encoded(picture), count
 
 
 def measure(bench, names, seeds):
