@@ -45,6 +45,7 @@ constexpr lf::HelpTexts kHelp = {
   lfcompressor capture/ -o capture.lfs --target-psnr 42 --verify
   lfcompressor capture/ -o capture.lfs --by-resolution        # for a web server
   lfcompressor packages/package-*.lfp -o film.lfs             # only the part that a film needs
+  lfcompressor capture.lfs -o served.lfs --by-resolution      # copies what is encoded already
   lfrenderer capture.lfs path.yaml -o frames                  # a store is a LIGHTFIELD
   lfrenderer packages/package-0000.lfp --lightfield film.lfs -o frames)",
     .details =
@@ -56,6 +57,9 @@ continues.
 A store of packages has the calibration of all LF cameras, and the LF images that the packages need.
 A film of these packages that is rendered from the store alone has the bits of a film that is
 rendered from a store of the whole light field. A film that needs other pixels is refused.
+
+Encoded images of a packed store are copied without a loss, for a store of packages, of shards or by
+resolution.
 
 LF images that are missing or broken are left out of the store, and the exit code is then 6. While
 the store is unfinished, --resume tries to read them again. To add them to a finished store, make it
@@ -77,7 +81,8 @@ void AddInput(CLI::App& app, Arguments& a) {
   input
       .Add("INPUT", a.inputs,
            "LIGHTFIELD, or PACKAGE... of lfpreprocessor\n"
-           "LIGHTFIELD: a light field of any supported kind, except a packed store\n"
+           "LIGHTFIELD: a light field of any supported kind; encoded images of a packed store are "
+           "copied\n"
            "PACKAGE: a file that lfpreprocessor has written (NAME.lfp)")
       ->required()
       ->check(lf::NotEmpty())
@@ -251,6 +256,17 @@ std::string NextOf(const Arguments& a, std::span<const lf::Package> packages) {
   return lf::NextRender(lf::ShellPackages(a.inputs), options);
 }
 
+// Returns kUsage if the encoded images of a packed store are copied, and an option says how to
+// encode them.
+lf::Result<void> CheckCopies(const Arguments& a, const lf::CompressSource& source) {
+  if (!source.IsCopied() || a.codec == lf::CodecWords()) return {};
+  return lf::UsageError(fmt::format(
+      "{}: is a packed store, whose encoded images are copied as they are: leave out --profile, "
+      "--threshold, --target-psnr, --levels, --quantizer, --reencode and --quality-by-use, or give "
+      "the light field that the store was made from",
+      source.light_field.folder.string()));
+}
+
 struct Input {
   lf::CompressSource source;
   std::optional<lf::ImageUse> use = {};  // set if --quality-by-use is given
@@ -275,6 +291,7 @@ lf::Result<Input> OpenInput(const Arguments& a, const std::atomic<bool>& interru
     LF_ASSIGN_OR_RETURN(lf::LightField light_field, argument.Open());
     Input input;
     LF_ASSIGN_OR_RETURN(input.source, lf::SourceOfAll(std::move(light_field)));
+    LF_RETURN_IF_ERROR(CheckCopies(a, input.source));
     input.next = NextOf(a, {});
     return input;
   }
@@ -296,6 +313,7 @@ lf::Result<Input> OpenInput(const Arguments& a, const std::atomic<bool>& interru
   Input input;
   LF_ASSIGN_OR_RETURN(input.source,
                       lf::SourceOfPackages(*std::move(light_field), packages, a.needed_pixels));
+  LF_RETURN_IF_ERROR(CheckCopies(a, input.source));
   if (a.codec.quality_by_use) {
     LF_ASSIGN_OR_RETURN(input.use, lf::UseBy(packages, pool, &interrupted));
   }

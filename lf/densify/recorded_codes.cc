@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lf/densify/recorded_codes.h"
 
-#include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "lf/light_field/model/channel_use.h"
@@ -28,18 +28,12 @@ Result<StoredKind> KindOfCode(const CodedImage& image, const RadianceEncoding& e
 Result<std::unique_ptr<RecordedCodes>> RecordedCodes::Open(const LightField& light_field) {
   std::unique_ptr<RecordedCodes> recorded(new RecordedCodes(light_field));
   if (!HoldsPackedStore(light_field)) return recorded;
-  LF_ASSIGN_OR_RETURN(recorded->codec_, ReadCodecSettings(light_field.folder));
-  LF_ASSIGN_OR_RETURN(recorded->codes_, FindCodes(light_field.folder, light_field));
-  LF_ASSIGN_OR_RETURN(recorded->reader_, PackedCodeReader::Open(light_field.folder));
-  if (std::any_of(recorded->codes_.begin(), recorded->codes_.end(),
-                  [](const PackedCode& code) { return code.values == StoredValues::kDisplay16; })) {
-    LF_ASSIGN_OR_RETURN(recorded->display_levels_, ReadDisplayLevels(light_field.folder));
-  }
+  LF_ASSIGN_OR_RETURN(recorded->copied_, CopiedCodes::Open(light_field));
   return recorded;
 }
 
 Result<CodedImage> RecordedCodes::Of(LfImageId id) const {
-  if (codes_.empty()) {
+  if (!copied_) {
     const Intrinsics& k = light_field_.Camera(id).intrinsics;
     LF_ASSIGN_OR_RETURN(const RecordedImage image,
                         ReadRecordedImage(light_field_, id, {0, 0, k.width_px, k.height_px}));
@@ -48,24 +42,18 @@ Result<CodedImage> RecordedCodes::Of(LfImageId id) const {
     LF_ASSIGN_OR_RETURN(std::optional<CodedImage> file, FileAsCode(light_field_, id, image));
     return SmallerOf(CodeOf(image, settings), std::move(file));
   }
-  const PackedCode& code = codes_[id.value];
-  const std::lock_guard lock(mutex_);
-  LF_ASSIGN_OR_RETURN(const PackedCodeReader::Bytes bytes, reader_->Read(code));
-  CodedImage image = {code.values, code.rect, std::string(bytes.code), std::string(bytes.mask),
-                      code.bytes};
-  if (image.mask.empty() && image.values != StoredValues::kFile) {
-    LF_ASSIGN_OR_RETURN(image.front_ends, FrontEndsOf(image.code));
-  }
-  return image;
+  return copied_->Of(id);
 }
 
 void RecordedCodes::Describe(PackedStorePlan* plan) const {
-  plan->codec = codec_;
-  plan->display_levels = display_levels_;
+  if (copied_)
+    copied_->Describe(plan);
+  else
+    plan->codec = kLosslessCodec;
 }
 
 Result<StoredKind> RecordedCodes::KindOf(LfImageId id) const {
-  if (codes_.empty()) {
+  if (!copied_) {
     LF_ASSIGN_OR_RETURN(const RecordedImage image,
                         ReadRecordedImage(light_field_, id, {0, 0, 2, 2}));
     return StoredKind{image.values, image.layout};

@@ -4,10 +4,6 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "lf/core/ids.h"
 #include "lf/core/result.h"
@@ -15,6 +11,7 @@
 #include "lf/light_field/model/light_field.h"
 #include "lf/light_field/model/radiance.h"
 #include "lf/pixels/codec/lf_image_codec.h"
+#include "lf/storage/load/copied_codes.h"
 #include "lf/storage/packed/packed_store_file.h"
 #include "lf/storage/packed/packed_store_writer.h"
 
@@ -45,11 +42,7 @@ class RecordedCodes {
   explicit RecordedCodes(const LightField& light_field) : light_field_(light_field) {}
 
   const LightField& light_field_;
-  std::string codec_{kLosslessCodec};
-  std::vector<PackedCode> codes_;  // [LF image]; empty if the light field has image files
-  std::optional<DisplayLevels> display_levels_;
-  mutable std::mutex mutex_;
-  mutable std::optional<PackedCodeReader> reader_;  // guarded by the mutex
+  std::unique_ptr<CopiedCodes> copied_;  // null if the light field has image files
 };
 
 }  // namespace lf

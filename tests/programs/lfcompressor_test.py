@@ -168,7 +168,8 @@ class CompressorTest(StoreTest):
         self.assertEqual(self.names(), [])
         self.compress(field, "-o", self.store)
         self.fails(2, ["exists already", "--overwrite"], COMPRESSOR, field, "-o", self.store)
-        self.fails(2, ["cannot be compressed again"], COMPRESSOR, self.store, "-o", self.folder / "b.lfs")
+        self.fails(2, ["copied as they are", "--profile"], COMPRESSOR, self.store, "-o", self.folder / "b.lfs",
+                   "--profile", "lossless")
         self.assertTrue(self.report(field, "-o", self.store, "--resume")["was_there"])
         self.fails(3, ["made with the encoding"], COMPRESSOR, field, "-o", self.store, "--verify",
                    "--threshold", 5)

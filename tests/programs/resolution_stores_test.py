@@ -155,6 +155,48 @@ class ResolutionStoresTest(ProgramTestCase):
                                (["--by-resolution and --shard-size"], ["--shard-size", "1M"])):
             self.fails(2, words, COMPRESSOR, *files, "-o", self.folder / "b.lfs", "--by-resolution", *options)
 
+    def test_encoded_images_are_copied_between_stores(self):
+        one = self.folder / "one.lfs"
+        self.succeeds(COMPRESSOR, self.field, "-o", one, "--reencode", "-q")
+        frames = self.frames("of_one", one, self.path)
+        report = json.loads(self.succeeds(COMPRESSOR, one, "-o", self.store, "--by-resolution", "--verify", "--json"))
+        self.assertEqual((report["copied"], report["coded"], report["verified"]), (True, 25, 25))
+        self.assertEqual(frames, self.frames("of_parts", self.store, self.path))
+        self.compress(store=self.folder / "b.lfs")
+        for number in range(4):
+            self.assertEqual(self.part(number).stat().st_size, self.folder.joinpath(f"b-r{number}.lfs").stat().st_size)
+        # Back again, and only what packages need.
+        shards = self.folder / "shards.lfs"
+        self.assertIn("copied    25 encoded images", self.succeeds(
+            COMPRESSOR, self.store, "-o", shards, "--shard-size", "20k", "--verify"))
+        self.assertEqual(frames, self.frames("of_shards", shards, self.path))
+        packages, film = self.folder / "packages", self.folder / "film.lfs"
+        path = write_path(self.folder, 2, aperture=0.012, x=-0.02)
+        self.succeeds(PREPROCESSOR, self.field, path, "-o", packages)
+        files = sorted(packages.glob("*.lfp"))
+        report = json.loads(self.succeeds(COMPRESSOR, *files, "--lightfield", one, "-o", film, "--verify", "--json"))
+        self.assertTrue(report["copied"])
+        self.assertLess(report["lf_images"], 25)
+        self.assertEqual(self.frames("film_of_one", *files, "--lightfield", one),
+                         self.frames("film", *files, "--lightfield", film))
+        self.assertEqual(self.frames("alone_of_one", one, path), self.frames("alone", film, path))
+        # A store of packages is copied with the LF images that it has.
+        self.succeeds(COMPRESSOR, film, "-o", self.folder / "again.lfs", "--by-resolution", "--verify")
+        self.assertEqual(self.frames("again", self.folder / "again.lfs", path), self.frames("alone2", film, path))
+        for words, options in ((["copied as they are", "--threshold"], ["--threshold", 5]),
+                               (["--needed-pixels", "copied as they are"], ["--needed-pixels"])):
+            self.fails(2, words, COMPRESSOR, *files, "--lightfield", one, "-o", self.folder / "none.lfs", *options)
+        self.fails(2, ["cannot be compressed again into itself"], COMPRESSOR, one, "-o", one, "--overwrite")
+        self.fails(3, ["made with the encoding"], COMPRESSOR, self.field, "-o", self.store, "--by-resolution",
+                   "--verify", "--threshold", 5)
+        # A damaged encoded image is left out, and named.
+        part = bytearray(self.part(3).read_bytes())
+        part[200] ^= 1
+        self.part(3).write_bytes(part)
+        report = json.loads(self.succeeds(COMPRESSOR, self.store, "-o", self.folder / "c.lfs", "--json", code=6))
+        self.assertEqual(len(report["skipped"]), 1)
+        self.assertIn("a wrong checksum", report["skipped"][0]["reason"])
+
     def test_what_needs_whole_images_is_refused(self):
         self.compress()
         self.part(3).unlink()

@@ -18,6 +18,8 @@ struct CodecWords {
   double target_psnr = 0;  // in dB; 0: the threshold is not searched for
   bool reencode = false;   // true: no image file is kept
   bool quality_by_use = false;
+
+  friend bool operator==(const CodecWords&, const CodecWords&) = default;
 };
 
 // Sets options->codec, options->files and options->target_psnr_db. kUsage: words that do not exist,

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <mutex>
 #include <utility>
 
@@ -15,6 +16,7 @@
 #include "lf/distribute/compress/image_coder.h"
 #include "lf/distribute/compress/verify_store.h"
 #include "lf/selection/spread_order.h"
+#include "lf/storage/load/copied_codes.h"
 #include "lf/storage/load/recorded_image.h"
 #include "lf/storage/packed/packed_store_file.h"
 #include "lf/storage/packed/packed_store_writer.h"
@@ -29,23 +31,29 @@ double Now() {
 
 // Returns the number of files of a store by resolution: one for each resolution that LF images can
 // be loaded with, up to an eighth of their size.
-size_t PartCount(const CompressOptions& options, const CodecSettings& settings) {
+size_t PartCount(const CompressOptions& options, const CodecSettings& settings, bool is_copied) {
   constexpr int kMostHalvings = 3;
   if (!options.by_resolution) return 0;
+  // The levels of encoded images that are copied are not known yet.
+  if (is_copied) return 1 + kMostHalvings;
   if (settings.profile == CodecProfile::kThesis || options.files == KeepFiles::kAll) return 1;
   return 1 + static_cast<size_t>(std::min(settings.levels, kMostHalvings));
 }
 
+//   copied  null unless encoded images are copied
 PackedStorePlan PlanOf(const CompressSource& source, const CompressOptions& options,
-                       const CodecSettings& settings, const ThresholdFactors& factors) {
+                       const CodecSettings& settings, const ThresholdFactors& factors,
+                       const CopiedCodes* copied) {
   PackedStorePlan plan;
   plan.whole = source.whole;
+  plan.whole_ids = source.whole_ids;
   plan.rects = source.rects;
   plan.codec = NameOf(settings, options.files, factors);
-  if (options.use != nullptr) plan.films = options.use->films;
+  plan.films = options.use != nullptr ? std::optional(options.use->films) : source.films;
   plan.display_levels = ImageCoder(source.light_field.encoding, settings).display_levels();
+  if (copied != nullptr) copied->Describe(&plan);
   plan.shard_bytes = options.shard_bytes;
-  plan.part_count = PartCount(options, settings);
+  plan.part_count = PartCount(options, settings, copied != nullptr);
   plan.source = options.source_name;
   plan.version = options.version;
   return plan;
@@ -96,8 +104,16 @@ class Compressor {
   Result<void> Write(FileLock lock);
   std::vector<LfImageId> Ordered() const;
   Result<void> CheckFiles(const PackedStoreWriter& writer);
-  void Count(LfImageId id, const RecordedImage& image, const CodedImage& coded,
-             const CodeError& lost);
+  // An LF image as the store keeps it.
+  struct Coded {
+    CodedImage image;
+    CodeError lost;
+    uint64_t pixel_bytes = 0;
+    bool is_rounded = false;
+  };
+  Result<Coded> Encode(LfImageId id) const;
+  Result<Coded> Copy(LfImageId id) const;
+  void Count(LfImageId id, const Coded& coded);
   void AddOne(PackedStoreWriter* writer, LfImageId id);
   VerifyOptions Verification() const;
   Result<void> Verify();
@@ -112,6 +128,8 @@ class Compressor {
   CodecSettings settings_;
   ThresholdFactors factors_;
   std::optional<ImageCoder> coder_;
+  std::unique_ptr<CopiedCodes> copied_;  // set if encoded images are copied
+  PackedStorePlan plan_;
 
   std::mutex mutex_;  // guards all members below
   CompressReport report_;
@@ -134,26 +152,13 @@ void Compressor::AddOne(PackedStoreWriter* writer, LfImageId id) {
     if (ended_) return;
   }
   const ThreadCpuTimer timer;
-  const LightField& light_field = source_.light_field;
-  const std::string& name = light_field.image_names[id.value];
-  const PixelRect rect = RectToRecord(light_field, id, source_.rects[id.value]);
-  const Result<RecordedImage> image = ReadRecordedImage(light_field, id, rect);
-  std::optional<CodedImage> coded;
+  const std::string& name = source_.light_field.image_names[id.value];
+  const Result<Coded> coded = copied_ ? Copy(id) : Encode(id);
   std::optional<Error> error;
-  CodeError lost;
-  if (!image) {
-    error = image.error();
-  } else {
-    if (Result<CodedImage> made =
-            coder_->CodeOrFile(light_field, id, *image, factors_.Of(id.value));
-        made) {
-      coded = *std::move(made);
-      lost = coder_->ErrorOf(*image, *coded);
-      if (const Result<void> added = writer->Add(id, *coded); !added) error = added.error();
-    } else {
-      error = made.error();
-    }
-  }
+  if (!coded)
+    error = coded.error();
+  else if (const Result<void> added = writer->Add(id, coded->image); !added)
+    error = added.error();
 
   const std::lock_guard lock(mutex_);
   report_.encode_cpu_s += static_cast<double>(timer.Nanoseconds()) * 1e-9;
@@ -168,23 +173,40 @@ void Compressor::AddOne(PackedStoreWriter* writer, LfImageId id) {
       error_ = *error;
     }
   } else {
-    Count(id, *image, *coded, lost);
+    Count(id, *coded);
   }
   if (progress_) progress_(now_);
 }
 
-void Compressor::Count(LfImageId id, const RecordedImage& image, const CodedImage& coded,
-                       const CodeError& lost) {
-  const std::string& name = source_.light_field.image_names[id.value];
-  const uint64_t pixel_bytes =
+Result<Compressor::Coded> Compressor::Encode(LfImageId id) const {
+  const LightField& light_field = source_.light_field;
+  const PixelRect rect = RectToRecord(light_field, id, source_.rects[id.value]);
+  LF_ASSIGN_OR_RETURN(const RecordedImage image, ReadRecordedImage(light_field, id, rect));
+  Coded coded;
+  LF_ASSIGN_OR_RETURN(coded.image,
+                      coder_->CodeOrFile(light_field, id, image, factors_.Of(id.value)));
+  coded.lost = coder_->ErrorOf(image, coded.image);
+  coded.pixel_bytes =
       std::visit([](const auto& pixels) { return pixels.size_bytes(); }, image.pixels);
+  coded.is_rounded = image.is_rounded && coded.image.values != StoredValues::kFile;
+  return coded;
+}
+
+Result<Compressor::Coded> Compressor::Copy(LfImageId id) const {
+  Coded coded;
+  LF_ASSIGN_OR_RETURN(coded.image, copied_->Of(id));
+  return coded;
+}
+
+void Compressor::Count(LfImageId id, const Coded& coded) {
+  const std::string& name = source_.light_field.image_names[id.value];
+  const CodeError& lost = coded.lost;
   ++report_.coded_count;
-  const bool is_file = coded.values == StoredValues::kFile;
-  report_.file_count += is_file ? 1 : 0;
-  report_.rounded_count += image.is_rounded && !is_file ? 1 : 0;
-  report_.source_bytes += coded.source_bytes;
-  report_.pixel_bytes += pixel_bytes;
-  report_.code_bytes += coded.code.size() + coded.mask.size();
+  report_.file_count += coded.image.values == StoredValues::kFile ? 1 : 0;
+  report_.rounded_count += coded.is_rounded ? 1 : 0;
+  report_.source_bytes += coded.image.source_bytes;
+  report_.pixel_bytes += coded.pixel_bytes;
+  report_.code_bytes += coded.image.code.size() + coded.image.mask.size();
   report_.error += lost;
   if (!errors_.empty()) errors_[id.value] = lost.Mean();
   if (report_.worst_name.empty() || lost.PsnrDb() < report_.worst_psnr_db ||
@@ -228,8 +250,7 @@ Result<void> Compressor::CheckFiles(const PackedStoreWriter& writer) {
 Result<void> Compressor::Write(FileLock lock) {
   coder_.emplace(source_.light_field.encoding, settings_, options_.files);
   LF_ASSIGN_OR_RETURN(PackedStoreWriter writer,
-                      OpenWriter(source_, options_, PlanOf(source_, options_, settings_, factors_),
-                                 std::move(lock)));
+                      OpenWriter(source_, options_, plan_, std::move(lock)));
   LF_RETURN_IF_ERROR(CheckFiles(writer));
   std::vector<LfImageId> ids;
   for (const LfImageId id : Ordered())
@@ -238,8 +259,8 @@ Result<void> Compressor::Write(FileLock lock) {
   now_.total = ids_.size();
   now_.done = report_.resumed_count;
   LogDebug("{}: {} LF images to be encoded, {} are encoded; codec {}; {} threads",
-           options_.store.string(), ids.size(), report_.resumed_count,
-           NameOf(settings_, options_.files, factors_), pool_.thread_count());
+           options_.store.string(), ids.size(), report_.resumed_count, plan_.codec,
+           pool_.thread_count());
   pool_.ForEach(ids.size(), [&](size_t i) { AddOne(&writer, ids[i]); });
   std::sort(report_.skipped.begin(), report_.skipped.end(),
             [](const auto& a, const auto& b) { return a.name < b.name; });
@@ -262,13 +283,8 @@ Result<void> Compressor::Write(FileLock lock) {
 }
 
 VerifyOptions Compressor::Verification() const {
-  return {options_.store,
-          settings_,
-          factors_,
-          options_.files,
-          PlanOf(source_, options_, settings_, factors_),
-          !options_.resume,
-          [this] { return IsInterrupted(); }};
+  return {options_.store, copied_.get(), settings_,        factors_,
+          options_.files, plan_,         !options_.resume, [this] { return IsInterrupted(); }};
 }
 
 Result<void> Compressor::Verify() {
@@ -298,6 +314,12 @@ Result<void> Compressor::FindSkipped() {
 Result<void> Compressor::CheckTarget() {
   const fs::path& store = options_.store;
   LF_ASSIGN_OR_RETURN(const bool is_there, IsStoreThere(store));
+  std::error_code ignored;
+  if (copied_ && fs::equivalent(store, source_.light_field.folder, ignored))
+    return UsageError(fmt::format(
+        "{}: is the packed store that would be copied, and cannot be compressed again into itself: "
+        "give the new store another name ({{output}})",
+        store.string()));
   const bool is_unfinished = PackedStoreWriter::IsUnfinished(store);
   if (options_.overwrite) return {};
   if (options_.resume) {
@@ -326,7 +348,9 @@ Result<void> Compressor::ChooseThreshold() {
     LogDebug("{{target_psnr {}}}: threshold {}", *options_.target_psnr_db, settings_.threshold);
   }
   report_.threshold = settings_.threshold;
-  report_.factors = factors_;
+  plan_ = PlanOf(source_, options_, settings_, factors_, copied_.get());
+  report_.codec = plan_.codec;
+  report_.is_copy = copied_ != nullptr;
   return {};
 }
 
@@ -335,6 +359,9 @@ Result<CompressReport> Compressor::Run() {
   settings_ = options_.codec;
   LF_RETURN_IF_ERROR(CheckSettings(settings_));
   LF_CHECK(!options_.by_resolution || options_.shard_bytes == 0);
+  if (source_.IsCopied()) {
+    LF_ASSIGN_OR_RETURN(copied_, CopiedCodes::Open(source_.light_field));
+  }
   report_.image_count = ids_.size();
   report_.left_out_count = source_.light_field.size() - ids_.size();
   LF_RETURN_IF_ERROR(CheckTarget());

@@ -68,8 +68,9 @@ struct CompressReport {
   size_t left_out_count = 0;  // other LF images: the store has their LF cameras alone
   size_t resumed_count = 0;   // LF images that the unfinished store already had
   bool was_there = false;     // true if the store was complete, so that nothing was written
+  std::string codec;          // settings in words, as the store records them
+  bool is_copy = false;       // true: encoded images were copied from another store
   double threshold = 0;       // threshold of the encoder, in grey steps
-  ThresholdFactors factors;   // its factors
   size_t rounded_count = 0;   // LF images with floats that half floats cannot represent exactly
   struct Skipped {
     std::string name;
@@ -104,12 +105,14 @@ struct CompressReport {
 std::string NameOf(const CodecSettings& settings, KeepFiles files,
                    const ThresholdFactors& factors = {});
 
-// Compresses the LF images of `source` into options.store. kUsage: wrong settings, the store exists
-// and no option says what to do with it, its name belongs to another file, or no threshold reaches
-// target_psnr_db. kInput: no LF image can be read, or `strict` is true and one cannot be read; the
-// files are not those that an unfinished store was made from; or the store differs from the result
-// of encoding its LF images (`verify`). kOutput: the disk or the memory fails. kInterrupted:
-// finished work is kept.
+// Compresses the LF images of `source` into options.store. If its light field is a packed store,
+// copies their encoded images, with the settings of that store in place of options.codec and files.
+// kUsage: wrong settings, the store exists
+// and no option says what to do with it, its name belongs to another file or is that of the store
+// that is copied, or no threshold reaches target_psnr_db. kInput: no LF image can be read, or
+// `strict` is true and one cannot be read; the files are not those that an unfinished store was
+// made from; or the store differs from the result of encoding its LF images (`verify`). kOutput:
+// the disk or the memory fails. kInterrupted: finished work is kept.
 Result<CompressReport> Compress(const CompressSource& source, const CompressOptions& options,
                                 ThreadPool& pool,
                                 const std::function<void(const CompressProgress&)>& progress);

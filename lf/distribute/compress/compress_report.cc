@@ -39,14 +39,11 @@ std::string ProgressDetail(const CompressProgress& now) {
 
 std::string CompressText(const CompressReport& report, const CompressOptions& options,
                          const std::string& next) {
-  CodecSettings settings = options.codec;
-  settings.threshold = report.threshold;
   std::string text = fmt::format(
       "{}: {} LF images{}, {}B in all; {}\n", options.store.string(),
       report.image_count - report.skipped.size(),
       report.skipped.empty() ? std::string() : fmt::format(" of {}", report.image_count),
-      ShortNumber(static_cast<double>(report.store_bytes)),
-      NameOf(settings, options.files, report.factors));
+      ShortNumber(static_cast<double>(report.store_bytes)), report.codec);
   if (report.left_out_count > 0)
     text += fmt::format(
         "{} LF images are left out, because the packages do not need them: a film that needs them "
@@ -57,7 +54,11 @@ std::string CompressText(const CompressReport& report, const CompressOptions& op
     text += fmt::format(
         "{} LF images were encoded before; the figures below are those of the other {}\n",
         report.resumed_count, report.coded_count);
-  if (report.coded_count > 0) {
+  if (report.coded_count > 0 && report.is_copy) {
+    text += fmt::format("copied    {} encoded images, {}B; {}\n", report.coded_count,
+                        ShortNumber(static_cast<double>(report.code_bytes)),
+                        ShortDuration(report.total_s));
+  } else if (report.coded_count > 0) {
     text += fmt::format("pixels    {}B, encoded {}B: {:.2f} : 1\n",
                         ShortNumber(static_cast<double>(report.pixel_bytes)),
                         ShortNumber(static_cast<double>(report.code_bytes)),
@@ -108,11 +109,9 @@ std::string MissingText(const CompressReport& report, const CompressOptions& opt
 
 std::string CompressJson(const CompressReport& report, const CompressOptions& options) {
   const auto decibels = [](double db) { return std::isinf(db) ? Json("exact") : Json(db); };
-  CodecSettings settings = options.codec;
-  settings.threshold = report.threshold;
   Json json;
   json["store"] = options.store.string();
-  json["codec"] = NameOf(settings, options.files, report.factors);
+  json["codec"] = report.codec;
   json["threshold"] = report.threshold;
   json["lf_images"] = report.image_count;
   json["lf_images_left_out"] = report.left_out_count;
@@ -124,7 +123,8 @@ std::string CompressJson(const CompressReport& report, const CompressOptions& op
   json["pixel_bytes"] = report.pixel_bytes;
   json["code_bytes"] = report.code_bytes;
   json["store_bytes"] = report.store_bytes;
-  if (report.coded_count > 0) {
+  json["copied"] = report.is_copy;
+  if (report.coded_count > 0 && !report.is_copy) {
     json["ratio"] = Ratio(report.pixel_bytes, report.code_bytes);
     json["psnr_db"] = decibels(report.error.PsnrDb());
     json["worst_psnr_db"] = decibels(report.worst_psnr_db);

@@ -20,14 +20,38 @@ PixelRect WholeImage(const LightField& light_field, size_t i) {
   return {0, 0, k.width_px, k.height_px};
 }
 
-// Refuses packed stores, because lossy compression would be applied twice, and virtual LF images,
-// which only the densified store has that was made with them.
-Result<void> CheckNotPacked(const LightField& light_field) {
-  if (!HoldsPackedStore(light_field) && !HasVirtual(light_field)) return {};
-  return UsageError(fmt::format(
-      "{}: is a packed store, which cannot be compressed again: give the light field that it was "
-      "made from",
-      light_field.folder.string()));
+// Sets identity and numbers of the LF images of a packed store, and removes the rectangles of those
+// that it has left out. kUsage: its encoded images cannot be copied.
+Result<void> DescribeStore(CompressSource* source) {
+  const LightField& light_field = source->light_field;
+  const std::string name = light_field.folder.string();
+  LF_ASSIGN_OR_RETURN(PackedStoreFacts facts, ReadPackedStore(light_field.folder));
+  if (facts.densified)
+    return UsageError(fmt::format(
+        "{}: is a densified store, which cannot be compressed again: give the light field that it "
+        "was made from",
+        name));
+  LF_ASSIGN_OR_RETURN(const std::vector<PackedCode> codes,
+                      FindCodes(light_field.folder, light_field));
+  for (size_t i = 0; i < codes.size(); ++i) {
+    if (codes[i].is_left_out) source->rects[i] = {};
+    const bool is_part = codes[i].bytes > 0 && codes[i].rect != WholeImage(light_field, i);
+    if (is_part || facts.LacksCameras())
+      return UsageError(
+          fmt::format("{}: has only what some packages need, and cannot be compressed again: give "
+                      "the light field that it was made from",
+                      name));
+  }
+  source->whole = facts.whole;
+  source->whole_ids = std::move(facts.whole_ids);
+  source->films = std::move(facts.films);
+  return {};
+}
+
+// Returns the identity by which packages know the light field.
+Result<LightFieldIdentity> WholeIdentityOf(const LightField& light_field) {
+  if (HoldsPackedStore(light_field)) return ReadWholeIdentity(light_field.folder);
+  return IdentityOf(light_field);
 }
 
 Result<CompressSource> SourceOf(LightField light_field, std::vector<PixelRect> rects) {
@@ -36,6 +60,7 @@ Result<CompressSource> SourceOf(LightField light_field, std::vector<PixelRect> r
   source.whole = IdentityOf(light_field);
   source.rects = std::move(rects);
   source.light_field = std::move(light_field);
+  if (source.IsCopied()) LF_RETURN_IF_ERROR(DescribeStore(&source));
   RadianceEncoding& encoding = source.light_field.encoding;
   if (encoding.footprint) return source;
   LF_ASSIGN_OR_RETURN(const std::unique_ptr<LfImageStore> store,
@@ -54,7 +79,6 @@ std::vector<LfImageId> CompressSource::CompressedIds() const {
 }
 
 Result<CompressSource> SourceOfAll(LightField light_field) {
-  LF_RETURN_IF_ERROR(CheckNotPacked(light_field));
   std::vector<PixelRect> rects;
   for (size_t i = 0; i < light_field.size(); ++i) rects.push_back(WholeImage(light_field, i));
   return SourceOf(std::move(light_field), std::move(rects));
@@ -63,14 +87,19 @@ Result<CompressSource> SourceOfAll(LightField light_field) {
 Result<CompressSource> SourceOfPackages(LightField light_field, std::span<const Package> packages,
                                         bool needed_pixels) {
   const Package& first = packages.front();
-  LF_RETURN_IF_ERROR(CheckNotPacked(first.light_field));
+  if (needed_pixels && HoldsPackedStore(light_field))
+    return UsageError(fmt::format(
+        "{{needed_pixels}} cannot be used with the packed store {}, whose encoded images "
+        "are copied as they are: leave it out",
+        light_field.folder.string()));
   for (const Package& package : packages)
     if (package.whole != first.whole)
       return UsageError(fmt::format(
           "packages {} and {} were made from different light fields: compress them into two "
           "stores",
           first.name, package.name));
-  if (IdentityOf(light_field) != first.whole)
+  LF_ASSIGN_OR_RETURN(const LightFieldIdentity whole, WholeIdentityOf(light_field));
+  if (whole != first.whole)
     return InputError(
         fmt::format("package {} was made from another light field than the one of {} LF images in "
                     "{}: give the light field that it was made from with {{lightfield}}",
@@ -91,7 +120,7 @@ Result<CompressSource> SourceOfPackages(LightField light_field, std::span<const 
     return UsageError(
         "the packages need no LF image, so that there is nothing to compress: give packages whose "
         "frames see LF images");
-  light_field.encoding = first.light_field.encoding;
+  if (!HoldsPackedStore(light_field)) light_field.encoding = first.light_field.encoding;
   return SourceOf(std::move(light_field), std::move(rects));
 }
 

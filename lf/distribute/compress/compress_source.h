@@ -2,6 +2,8 @@
 // The input of a packed store: all LF cameras of a light field, and which pixels are encoded.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,6 +13,7 @@
 #include "lf/light_field/model/light_field.h"
 #include "lf/light_field/model/light_field_identity.h"
 #include "lf/render/package/package.h"
+#include "lf/storage/packed/packed_store_file.h"
 
 namespace lf {
 
@@ -23,23 +26,31 @@ struct CompressSource {
   // the LF cameras of all LF images, so that the order of LF images, lens weights and the choice of
   // rebinned rays are those of the whole light field.
   std::vector<PixelRect> rects;
+  // Number of each LF image in the whole light field (PackedStorePlan::whole_ids); empty: 0, 1, 2,
+  // ...
+  std::vector<uint32_t> whole_ids = {};
+  std::optional<StoreFilms> films = {};  // films that the packed store was encoded for
 
+  // Returns true if the light field is a packed store, whose encoded images are copied.
+  bool IsCopied() const { return HoldsPackedStore(light_field); }
   // Returns the ids of the LF images that are not left out, ascending; there is at least one.
   std::vector<LfImageId> CompressedIds() const;
 };
 
-// Returns all LF images of the light field, with all their pixels. kUsage: the light field is a
-// packed store already. kOutput as MeasureFootprint(), which is called if the calibration does not
-// state the footprint.
+// Returns all LF images of the light field, with all their pixels; of a packed store, those that it
+// has. kUsage: the light field is reduced, or a packed store that is densified, has parts of LF
+// images alone, or was made from packages by an older program. kInput: the store is damaged.
+// kOutput as MeasureFootprint(), which is called if the calibration does not state the footprint.
 Result<CompressSource> SourceOfAll(LightField light_field);
 
 // Returns the LF images from which frames of the packages take rays, and leaves out all others.
 //   light_field    the light field that the packages were made from
 //   needed_pixels  true: of each LF image, only the bounds of the pixels that these frames need;
 //                  false: all pixels
-// The result has the radiance encoding of the packages. kUsage: the packages are of different light
-// fields or of a packed store, or none of their frames takes a ray. kInput: `light_field` is
-// another one than that of the packages. kOutput as SourceOfAll().
+// The result has the radiance encoding of the packages, or of the packed store. kUsage: the
+// packages are of different light fields, or none of their frames takes a ray; needed_pixels is
+// true for a packed store; the errors of SourceOfAll(). kInput: `light_field` is another one than
+// that of the packages. kOutput as SourceOfAll().
 Result<CompressSource> SourceOfPackages(LightField light_field, std::span<const Package> packages,
                                         bool needed_pixels);
 

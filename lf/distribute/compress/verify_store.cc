@@ -23,8 +23,7 @@ Result<void> CheckStoreFacts(const CompressSource& source, const VerifyOptions& 
     return InputError(fmt::format(
         "{}: is a packed store of another light field: give the light field that it was made from",
         options.store.string()));
-  if (const std::string asked = NameOf(options.settings, options.files, options.factors);
-      facts.codec != asked)
+  if (const std::string& asked = options.plan.codec; facts.codec != asked)
     return InputError(fmt::format(
         "{}: was made with the encoding \"{}\", but the options ask for \"{}\": give the "
         "options that the store was made with",
@@ -56,24 +55,29 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
     LF_ASSIGN_OR_RETURN(PackedCodeReader reader, PackedCodeReader::Open(options.store));
     return std::make_unique<PackedCodeReader>(std::move(reader));
   };
+  // Encodes an LF image as it must be in the store. kInput: it cannot be read.
+  const auto encode = [&](LfImageId id) -> Result<CodedImage> {
+    if (options.copied) return options.copied->Of(id);
+    const PixelRect rect = RectToRecord(light_field, id, source.rects[id.value]);
+    LF_ASSIGN_OR_RETURN(const RecordedImage image, ReadRecordedImage(light_field, id, rect));
+    return coder.CodeOrFile(light_field, id, image, options.factors.Of(id.value));
+  };
   // Checks an LF image and its encoded image. The error says what is wrong with them.
   const auto check = [&](LfImageId id) -> Result<void> {
     const PackedCode& code = codes[id.value];
-    const PixelRect rect = RectToRecord(light_field, id, source.rects[id.value]);
-    const Result<RecordedImage> image = ReadRecordedImage(light_field, id, rect);
+    const Result<CodedImage> made = encode(id);
     if (code.bytes == 0) {
-      if (image)
+      if (made)
         return InputError(
             "the image can be read, but is not in the store; make the store again with "
             "{overwrite}");
       return {};
     }
-    LF_RETURN_IF_ERROR(image);
+    LF_RETURN_IF_ERROR(made);
+    const CodedImage& again = *made;
     LF_ASSIGN_OR_RETURN(std::unique_ptr<PackedCodeReader> reader, reader_of_thread());
     const Result<PackedCodeReader::Bytes> bytes = reader->Read(code);
     LF_RETURN_IF_ERROR(bytes);
-    LF_ASSIGN_OR_RETURN(const CodedImage again,
-                        coder.CodeOrFile(light_field, id, *image, options.factors.Of(id.value)));
     if (code.values != StoredValues::kFile) {
       DecodedPart decoded;
       LF_RETURN_IF_ERROR(DecodeImage(bytes->code, &decoded));
@@ -81,7 +85,7 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
     if (code.rect != again.rect || code.values != again.values || bytes->code != again.code ||
         bytes->mask != again.mask)
       return InputError(
-          "the encoded image in the store differs from the image file; make the store again with "
+          "the encoded image in the store differs from its source; make the store again with "
           "{overwrite}");
     for (size_t left_out = 1; left_out <= again.front_ends.size(); ++left_out) {
       const auto front = reader->ReadFront(code, left_out);
@@ -90,7 +94,7 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
       if (!*front) break;
       if (!std::string_view(again.code).starts_with((*front)->code))
         return InputError(
-            "the front of the encoded image in the store differs from the image file; make the "
+            "the front of the encoded image in the store differs from its source; make the "
             "store again with {overwrite}");
     }
     const std::lock_guard lock(mutex);

@@ -13,17 +13,19 @@
 #include "lf/distribute/compress/image_use.h"
 #include "lf/distribute/compress/keep_files.h"
 #include "lf/pixels/codec/lf_image_codec.h"
+#include "lf/storage/load/copied_codes.h"
 #include "lf/storage/packed/packed_store_writer.h"
 
 namespace lf {
 
 struct VerifyOptions {
   std::filesystem::path store;
-  CodecSettings settings;              // settings that the store must have been made with
-  ThresholdFactors factors;            // factors of their threshold
-  KeepFiles files = KeepFiles::kNone;  // as the store must have been made
-  PackedStorePlan plan;                // the plan that the store must match
-  bool any_shards = true;              // true: shards may have any size
+  const CopiedCodes* copied = nullptr;  // set if encoded images were copied from another store
+  CodecSettings settings;               // settings that the store must have been made with
+  ThresholdFactors factors;             // factors of their threshold
+  KeepFiles files = KeepFiles::kNone;   // as the store must have been made
+  PackedStorePlan plan;                 // the plan that the store must match
+  bool any_shards = true;               // true: shards may have any size
   std::function<bool()> is_interrupted;
 };
 

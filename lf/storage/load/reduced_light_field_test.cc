@@ -67,7 +67,7 @@ TEST_F(ReducedLightFieldTest, AReducedLightFieldIsReducedFurther) {
   EXPECT_TRUE(store->Keeps({1}, {1, 1, 2, 2}));
 }
 
-// What is loaded of a store whose finest files are missing is what a complete store loads reduced.
+// The pixels of a store whose finest files are missing are what a complete store loads reduced.
 TEST_F(ReducedLightFieldTest, StoresByResolutionNeedNoFinerParts) {
   AddImages<uint8_t>(3);
   MaskRow7OfImage2();

@@ -36,8 +36,8 @@ struct PartRange {
   uint64_t end() const { return begin + bytes; }
 };
 
-// Where the bytes of one LF image are: those of its mask in part 0, and those of its encoded image,
-// the smallest picture first.
+// The places of the bytes of one LF image: those of its mask in part 0, and those of its encoded
+// image, the smallest picture first.
 struct ImageRanges {
   PartRange mask;
   std::vector<PartRange> pieces;  // at least one

@@ -57,8 +57,8 @@ Result<PartSetWriter> PartSetWriter::Open(const fs::path& store_path, const std:
 
 Result<ImageRanges> PartSetWriter::Add(const CodedImage& image) {
   ImageRanges ranges;
-  // Half floats are not reduced (storage/load/packed_store.h). The smallest pictures that no part
-  // is for are in part 0, too.
+  // Half floats are not reduced (storage/load/packed_store.h). Part 0 also has the smallest
+  // pictures for which there is no part.
   const size_t front_count = image.values == StoredValues::kHalf
                                  ? 0
                                  : std::min(image.front_ends.size(), parts_.size() - 1);
