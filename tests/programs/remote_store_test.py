@@ -115,7 +115,7 @@ class FilmTest(RemoteStoreTest):
         url = server.url("field.lfs")
         self.assertIn(url, self.succeeds(program("lfimport"), url))
         self.succeeds(program("lfexample"), url, "-o", self.folder / "example.yaml")
-        self.succeeds(program("lffocus"), "stack", url, "-o", self.folder / "stack", "--planes", 2, "-q")
+        self.succeeds(program("lffocus"), "stack", url, self.path, "-o", self.folder / "stack", "--planes", 2, "-q")
         self.assertIn("frame", self.succeeds(program("lfvisualizer"), url, self.path, "--text"))
 
 
