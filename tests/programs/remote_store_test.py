@@ -116,7 +116,7 @@ class FilmTest(RemoteStoreTest):
         self.assertIn(url, self.succeeds(program("lfimport"), url))
         self.succeeds(program("lfexample"), url, "-o", self.folder / "example.yaml")
         self.succeeds(program("lffocus"), "stack", url, self.path, "-o", self.folder / "stack", "--planes", 2, "-q")
-        self.assertIn("frame", self.succeeds(program("lfvisualizer"), url, self.path, "--text"))
+        self.assertIn("collected", self.succeeds(program("lfvisualizer"), url, self.path, "--text"))
 
 
 class ByResolutionTest(RemoteStoreTest):
