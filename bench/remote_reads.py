@@ -5,13 +5,15 @@
 usage: bench/remote_reads.py BUILD_DIR [--count 100] [--size 640x480] [--latency-ms 20] [--name NAME] [--write PAGE]
        bench/remote_reads.py --again JSON [--write PAGE]
 
-The store holds `still-life` in the default profile, and each call begins without a local copy. The server is on this
-machine, and waits for the latency before each answer. Times are those of one call, `local` those of the same call with
-the store as a local file.
+The store holds `still-life` in the default profile; the lens is eight distances of LF cameras wide. Rows with
+--reduce name mode, estimator and lens weights, the others render by the defaults. Each call begins without a local
+copy, but for the last one. The server is on this machine, and waits for the latency before each answer. Times are
+those of one call, `local` those of the same call with the store as a local file.
 """
 import argparse
 import json
 import pathlib
+import re
 import sys
 import tempfile
 import time
@@ -21,12 +23,15 @@ import record as results
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "tests/helpers"))
 from range_server import RangeServer
 
+CHOICES = ("--mode", "collect", "--estimator", "bilinear", "--lens-weights", "area")
+LENS = 8  # diameter of the lens, in distances of LF cameras
 CALLS = {"the report of `lfimport`, without checks": ("lfimport", "{field}", "--check", "none"),
          **{f"`lfrenderer --frames 1 --reduce {n}`": ("lfrenderer", "{field}", "{path}", "-o", "{out}", "--frames", 1,
-                                                      "--reduce", n) for n in (8, 4, 2)},
+                                                      "--reduce", n, *CHOICES) for n in (8, 4, 2)},
          "`lfrenderer --frames 1`": ("lfrenderer", "{field}", "{path}", "-o", "{out}", "--frames", 1),
-         "`lfrenderer`, all frames": ("lfrenderer", "{field}", "{path}", "-o", "{out}"),
-         "`lfrenderer`, all frames, from the local copy": ("lfrenderer", "{field}", "{path}", "-o", "{out}")}
+         "`lfrenderer --frames 1-5`": ("lfrenderer", "{field}", "{path}", "-o", "{out}", "--frames", "1-5"),
+         "`lfrenderer --frames 1-5`, from the local copy":
+             ("lfrenderer", "{field}", "{path}", "-o", "{out}", "--frames", "1-5")}
 
 
 def timed_call(arguments, call, field, folder, cache):
@@ -42,8 +47,11 @@ def rows_of(arguments, folder):
     served = folder / "served"
     served.mkdir()
     results.call([programs / "lfsynth", "still-life", "-o", folder / "field", "--count", arguments.count, "--size",
-                  arguments.size, "-q"])
+                  arguments.size, "--format", "png", "-q"])
     results.call([programs / "lfexample", folder / "field", "-o", folder / "path.yaml", "-q"])
+    path = (folder / "path.yaml").read_text()
+    spacing = float(re.search(r"LF cameras are (\S+) apart", path).group(1))
+    (folder / "path.yaml").write_text(re.sub(r"aperture_diameter: \S+", f"aperture_diameter: {LENS * spacing}", path))
     results.call([programs / "lfcompressor", folder / "field", "-o", served / "field.lfs", "--by-resolution", "-q"])
     whole = sum(file.stat().st_size for file in served.iterdir())
     server = RangeServer(served, lambda *_: time.sleep(arguments.latency_ms / 1000))

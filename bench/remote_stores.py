@@ -43,13 +43,12 @@ class Faults:
     def __init__(self):
         self.sent = 0
 
-    def pour(self, handler, piece=PIECE, pause_s=0):
+    def pour(self, handler, piece=PIECE):
         try:
             while True:
                 handler.wfile.write(piece)
                 handler.wfile.flush()
                 self.sent += len(piece)
-                time.sleep(pause_s)
         except OSError:
             handler.close_connection = True
             return True
@@ -71,10 +70,6 @@ class Faults:
         head(handler, begin, end, 10 << 20)
         time.sleep(1000)
         return True
-
-    def drips(self, handler, _, begin, end):
-        head(handler, begin, begin + (1 << 20), 10 << 20)
-        return self.pour(handler, b"x", 1)
 
     def no_ranges(self, handler, *_):
         handler.send_response(200)
@@ -133,7 +128,7 @@ class Faults:
 
 KINDS = {"good": "sends what it is asked for", "breaks_off": "ends each transfer in the middle",
          "never_answers": "takes the connection and never answers", "stalls": "sends headers and no body",
-         "drips": "sends 1 byte/s", "no_ranges": "sends 1 TiB in place of each range (status 200)",
+         "no_ranges": "sends 1 TiB in place of each range (status 200)",
          "endless_body": "sends a body without an end", "endless_headers": "sends headers without an end",
          "another_range": "sends another range than that asked for", "compressed": "compresses what it sends",
          "huge_file": "says that the file has 1 PiB", "redirects": "redirects to itself",
