@@ -31,6 +31,7 @@ import quality
 from quality import results
 
 THRESHOLDS = (2, 5, 12)
+DEFAULT = "--mode collect --estimator bilinear --filter auto --lens-weights auto".split()
 FRAMES = 8
 # Name: diameters at the begin and the end, and places of the camera to the right and above.
 FILMS = {
@@ -99,7 +100,7 @@ class Bench:
         """Returns the frames of the packages, in sRGB."""
         out = self.folder / "frames"
         results.call([self.programs / "lfrenderer", *packages, "-o", out, "--format", "exr-float", "-q",
-                      "--no-contact-sheet", "--overwrite", *options])
+                      "--no-contact-sheet", "--overwrite", *DEFAULT, *options])
         pictures = [quality.encoded(lens_weights.linear_exr(file)) for file in sorted(out.glob("frame_*.exr"))]
         shutil.rmtree(out)
         return pictures

@@ -105,8 +105,6 @@ class QualityByUseTest(ProgramTestCase):
             self.assertAlmostEqual(10 * np.log10(255 ** 2 / error), predicted, delta=4)
             self.assertGreater(report["code_bytes"], before)
             before = report["code_bytes"]
-        self.fails(2, ["--target-psnr 89", "cannot be reached"], COMPRESSOR, *packages, BY_USE, "--target-psnr", 89,
-                   "-o", self.store, "--overwrite")
 
     def test_every_kind_of_picture(self):
         for options in ["--format", "png16"], ["--bayer"], ["--format", "exr"]:
@@ -146,7 +144,7 @@ class QualityByUseTest(ProgramTestCase):
         image.write_bytes(pixels)
         self.store.unlink()
         self.fails(2, ["codec", "--overwrite"], COMPRESSOR, *packages, "-o", self.store, "--resume")
-        self.fails(2, ["codec", "--overwrite"], COMPRESSOR, packages[0], "-o", self.store, "--resume", BY_USE)
+        self.fails(2, ["was begun with", "--overwrite"], COMPRESSOR, packages[0], "-o", self.store, "--resume", BY_USE)
         report = self.report(*packages, "--resume", BY_USE, "--verify")
         self.assertGreater(report["resumed"], 0)
         self.assertNotIn("frames", report)

@@ -265,11 +265,11 @@ class SchemasTest(ProgramTestCase):
         return field
 
     def store_of_packages(self):
-        """Returns a store that has only the calibration of some LF images."""
+        """Returns a store that has only the calibration of some LF images, and was encoded for a film."""
         packages, store = self.folder / "few", self.folder / "few.lfs"
         self.succeeds(PROGRAMS / "lfpreprocessor", self.field,
                       small_field.write_path(self.folder, frames=1, aperture=0.01), "-o", packages)
-        self.succeeds(PROGRAMS / "lfcompressor", *packages.glob("*.lfp"), "-o", store)
+        self.succeeds(PROGRAMS / "lfcompressor", *packages.glob("*.lfp"), "-o", store, "--quality-by-use")
         return store
 
     def test_reports_of_imports(self):
@@ -317,6 +317,9 @@ class SchemasTest(ProgramTestCase):
         self.prints("compress_report", *compress, "--resume")
         self.prints("compress_report", *compress, "--overwrite", "--profile", "lossless")
         self.prints("compress_report", "lfcompressor", self.broken_field(), "-o", self.folder / "b.lfs", code=6)
+        self.store_of_packages()
+        self.prints("compress_report", "lfcompressor", *(self.folder / "few").glob("*.lfp"), "--quality-by-use", "-o",
+                    self.folder / "c.lfs")
         self.covered("compress_report")
 
     def test_reports_of_densified_stores(self):

@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <utility>
 #include <vector>
-
-#include "lf/render/collect/test_noise_field.h"
 
 namespace lf {
 namespace {
@@ -62,11 +62,31 @@ TEST(PredictFrames, AddsOwnAndCommonErrors) {
   EXPECT_NEAR(errors.mean, (both + 0.01) / 2, 1e-9);
 }
 
+// Returns a package of a film of three frames, and nine LF cameras 1 apart that look along z.
+Package PackageOfThree() {
+  LightField field;
+  field.intrinsics = {{100, 100, 50, 40, 0, 100, 80}};
+  CameraPath path;
+  RenderCamera frame;
+  frame.pinhole.intrinsics = field.intrinsics[0];
+  for (int i = 0; i < 9; ++i) {
+    LfCamera camera;
+    camera.cam_from_world = *LookAlong({i % 3 - 1., i / 3 - 1., 0}, {0, 0, 1}, {0, -1, 0});
+    field.cameras.push_back(camera);
+    field.image_names.push_back("image " + std::to_string(i));
+  }
+  for (int i = 0; i < 3; ++i) {
+    frame.pinhole.cam_from_world = *LookAlong({0.2 * i, 0, 0}, {0, 0, 1}, {0, -1, 0});
+    frame.aperture = {1.5, 0, 0};
+    frame.focus_plane = FocusPlane(frame.pinhole, 10, {0, 0});
+    path.cameras.push_back(frame);
+  }
+  return PackageOfAll(std::move(field), std::move(path), 1);
+}
+
 TEST(UseBy, PackagesWithoutWeightsAreRefused) {
   ThreadPool pool(1);
-  CameraPath path;
-  path.cameras = testing::NoiseFrames();
-  Package package = PackageOfAll(testing::NoiseField(), path, 1);
+  Package package = PackageOfThree();
   package.images.resize(package.light_field.size());
   for (uint32_t i = 0; i < package.images.size(); ++i) package.images[i] = {i, 1, kImage, 1, 1};
   const Result<ImageUse> use = UseBy(std::span(&package, 1), pool, nullptr);

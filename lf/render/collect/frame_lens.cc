@@ -11,7 +11,7 @@
 
 #include "lf/light_field/model/time_slices.h"
 #include "lf/render/collect/around_lens.h"
-#include "lf/render/collect/square_weights.h"
+#include "lf/render/collect/sampled_weights.h"
 #include "lf/selection/lens_weights/image_feather.h"
 
 namespace lf {
@@ -149,12 +149,20 @@ Image<float> EffectiveCountsOf(std::span<const FrameLens> lenses) {
       if (lens.Takes(id) && !light_field.cameras[id.value].is_virtual) ids.push_back(id);
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-  const SquareWeights squares(lenses);
-  const int columns = squares.columns(), rows = squares.rows();
+  const Intrinsics& plate = lenses.front().camera().pinhole.intrinsics;
+  const int step = EffectiveStep(plate);
+  const auto [columns, rows] = EffectiveSquares(plate);
+  const auto middles = [step](int count, int size_px) {
+    std::vector<int> elements;
+    for (int i = 0; i < count; ++i) elements.push_back(std::min(i * step + step / 2, size_px - 1));
+    return elements;
+  };
+  const SampledWeights sampled(lenses, middles(columns, plate.width_px),
+                               middles(rows, plate.height_px));
   Image<double> sums(columns, rows, 2);
   Image<double> of_image(columns, rows);
   for (const LfImageId id : ids) {
-    squares.Of(id, of_image.pixels());
+    sampled.Of(id, of_image.pixels());
     for (int row = 0; row < rows; ++row)
       for (int column = 0; column < columns; ++column) {
         const double weight = of_image.at(column, row);

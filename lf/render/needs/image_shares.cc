@@ -6,11 +6,13 @@
 #include <span>
 
 #include "lf/render/collect/frame_lens.h"
-#include "lf/render/collect/square_weights.h"
+#include "lf/render/collect/sampled_weights.h"
 #include "lf/selection/select.h"
 
 namespace lf {
 namespace {
+
+constexpr int kSamples = 12;  // number of columns, and of rows, in which weights are computed
 
 std::vector<FrameLens> LensesOfFrame(const ImageIndex& index, const Package& package, FrameId frame,
                                      LensWeights kind, const SelectOptions& select,
@@ -41,6 +43,14 @@ std::vector<LfImageId> TakenImages(const ImageIndex& index, const Package& packa
   return ids;
 }
 
+// Returns the middle columns (or rows) of kSamples equal parts of a side of the plate.
+std::vector<int> SampledElements(int size_px) {
+  std::vector<int> elements;
+  const int count = std::min(kSamples, size_px);
+  for (int i = 0; i < count; ++i) elements.push_back((2 * i + 1) * size_px / (2 * count));
+  return elements;
+}
+
 }  // namespace
 
 std::vector<ImageShare> SharesOf(const ImageIndex& index, const Package& package, FrameId frame,
@@ -49,25 +59,25 @@ std::vector<ImageShare> SharesOf(const ImageIndex& index, const Package& package
   select.max_angle_rad = package.choices.max_angle_rad;
   const std::vector<FrameLens> lenses = LensesOfFrame(index, package, frame, kind, select, pool);
   const std::vector<LfImageId> ids = TakenImages(index, package, lenses, select, pool);
-  const SquareWeights squares(lenses);
-  const auto count = static_cast<size_t>(squares.columns()) * squares.rows();
-  std::vector<double> weights(ids.size() * count);  // [LF image][square]
+  const Intrinsics& plate = lenses.front().camera().pinhole.intrinsics;
+  const std::vector<int> columns = SampledElements(plate.width_px);
+  const std::vector<int> rows = SampledElements(plate.height_px);
+  const size_t count = columns.size() * rows.size();
+  const SampledWeights sampled(lenses, columns, rows);
+  std::vector<double> weights(ids.size() * count);  // [LF image][element]
   pool.ForEach(ids.size(),
-               [&](size_t i) { squares.Of(ids[i], std::span(weights).subspan(i * count, count)); });
-  std::vector<double> sums(count), parts;  // [square]: sum of all weights, and share of the plate
+               [&](size_t i) { sampled.Of(ids[i], std::span(weights).subspan(i * count, count)); });
+  std::vector<double> sums(count);
   for (size_t i = 0; i < weights.size(); ++i) sums[i % count] += weights[i];
-  for (int row = 0; row < squares.rows(); ++row)
-    for (int column = 0; column < squares.columns(); ++column)
-      parts.push_back(squares.ShareOfPlate(column, row));
   std::vector<ImageShare> shares;
   for (size_t i = 0; i < ids.size(); ++i) {
     ImageShare of_image{ids[i]};
-    for (size_t square = 0; square < count; ++square) {
-      const double weight = weights[i * count + square];
+    for (size_t element = 0; element < count; ++element) {
+      const double weight = weights[i * count + element];
       if (weight == 0) continue;
-      const double share = weight / sums[square];
-      of_image.share += share * parts[square];
-      of_image.squared += share * share * parts[square];
+      const double share = weight / sums[element];
+      of_image.share += share / static_cast<double>(count);
+      of_image.squared += share * share / static_cast<double>(count);
     }
     if (of_image.share > 0) shares.push_back(of_image);
   }

@@ -26,12 +26,10 @@ struct ImageShare {
 // Returns the shares of the LF images that a frame of a package collects rays of, by ascending ids.
 // LF images that no element sees are left out.
 //
-// Shares follow from poses alone, without reading an LF image. They are computed for the middle
-// element of each square of EffectiveStep() x EffectiveStep() elements
-// (render/collect/frame_lens.h), about a hundred elements for each frame, and shares between them
-// are taken to be like these. Masks, opacities, broken LF images and stop rules are not taken into
-// account. Takes about as long as the lens weights of the frame in a render: some tens of
-// microseconds for each LF camera around the lens.
+// Shares follow from poses alone, without reading an LF image. They are computed for 12 x 12
+// elements that are spread evenly over the frame. Masks, opacities, broken LF images and stop rules
+// are not taken into account. Takes about as long as the lens weights of the frame in a render:
+// some tens of microseconds for each LF camera around the lens.
 //   index    of the package's light field, with its ranks
 //   kind     kNone: rays have equal weights. Must be kNone if the package has no neighbours, and
 //            must not be kArea if the lens is a pinhole
