@@ -53,6 +53,7 @@ UNTRIED = {
     "packed_store: compress the light field again with the --image-alpha of this run": BEFORE,
     "packed_store_file: is an unfinished packed store": "needs an unfinished store that somebody has renamed",
     "packed_store_file: lfcompressor --resume": "needs an unfinished store that somebody has renamed",
+    "part_file: start the store again with lfcompressor --overwrite": "needs an unfinished file that was cut off",
     "packed_store_writer: give a larger --shard-size": CAPTURE + "thousands of shards",
     "film_renderer_save: make --r-st or --r-uv smaller": CAPTURE + "millions of rays in one cell",
     "display_view: this program was built without OpenColorIO": "depends on how the programs were built",

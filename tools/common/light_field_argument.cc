@@ -46,7 +46,7 @@ void AddUnusualOptions(CLI::App& app, LightFieldArgument& argument) {
       "removed first. Nothing is removed from DIR.");
   unusual.Add(
       "--store-cache DIR", argument.store_cache,
-      "Folder for local copies of stores on web servers (in ~/.cache)\n"
+      "Folder for copies of stores on web servers (~/.cache)\n"
       "What is read of a store is kept there for later calls. The folder in ~/.cache, or in "
       "$XDG_CACHE_HOME, is kept below 16 GiB: stores that were not used for a day are removed "
       "first. Nothing is removed from DIR.");
