@@ -76,7 +76,7 @@ Result<void> ReduceToParts(const fs::path& path, int asked, PackedStoreFacts* fa
   if (divisor > asked)
     LogWarning(
         "{}: {} of the store's {} files of LF images are missing: LF images are loaded at 1/{} of "
-        "their width and height; copy the files beside the store for more",
+        "their width and height; add these files to the store for more",
         path.string(), missing, facts->part_count, divisor);
   return ReduceLightField(divisor, &facts->light_field);
 }
