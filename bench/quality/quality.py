@@ -6,7 +6,7 @@ of doc/quality.md.
 usage: quality.py LFRENDERER GROUNDTRUTH [--areas] [--name NAME] [--write doc/quality.md] [--check] [--keep DIR]
        quality.py --again JSON [--write doc/quality.md]
 
-GROUNDTRUTH  folder with cases.json, gt/, data/, compare.py and exr2pfm.py
+GROUNDTRUTH  folder with cases.json, README.md, gt/ and data/
 --check      exit 1 if a case falls more than 0.3 dB below a column of GROUNDTRUTH/README.md: scatter for the estimator
              nearest, gather for bilinear, the better of both for the others
 --areas      the other table: pixels that show areas. LF images and true pictures are reduced to half their size, by
@@ -20,7 +20,6 @@ import math
 import os
 import pathlib
 import re
-import subprocess
 import sys
 import tempfile
 
@@ -118,15 +117,6 @@ def render(renderer, calibration, path, folder, options):
     return folder / "frame_0001.exr", report["frames"][0]["lf_images"]
 
 
-def psnr(truth_folder, case, frame):
-    pfm, difference = frame.with_suffix(".pfm"), frame.with_name("difference.png")
-    python = "/usr/bin/python3"
-    subprocess.run([python, truth_folder / "exr2pfm.py", frame, pfm], check=True)
-    result = subprocess.run([python, truth_folder / "compare.py", truth_folder / case["linear"],
-                             pfm, "--diff", difference], check=True, capture_output=True, text=True)
-    return json.loads(result.stdout)["psnr_linear"]
-
-
 def reference_columns(truth_folder):
     """Returns case -> (scatter, gather) in dB, from the table in the README."""
     columns = {}
@@ -176,6 +166,15 @@ def read_pfm(path):
     _, size, _, values = path.read_bytes().split(b"\n", 3)
     width, height = map(int, size.split())
     return np.frombuffer(values, "<f4").reshape(height, width, 3)[::-1]
+
+
+def psnr(truth_folder, case, frame):
+    """Returns the PSNR of a frame in linear light, in dB, and writes a picture of its difference beside it."""
+    truth = read_pfm(truth_folder / case["linear"]).astype(float)
+    picture = cv2.imread(str(frame), cv2.IMREAD_UNCHANGED)[..., 2::-1].astype(float)
+    difference = np.clip(128 + 4 * 255 * (encoded(picture) - encoded(truth)), 0, 255).astype(np.uint8)
+    Image.fromarray(difference).save(frame.with_name("difference.png"))
+    return -10 * math.log10(np.mean((truth - np.clip(picture, 0, 1)) ** 2))
 
 
 def true_picture_of_areas(truth, case):
