@@ -25,7 +25,8 @@ std::atomic<int64_t> first_interrupt_ns = 0;
 timer_t patience_timer{};
 bool has_patience_timer = false;
 constexpr itimerspec kPatience = {.it_interval = {}, .it_value = {1, 500'000'000}};
-std::atomic<bool> ends_soon = false;
+std::atomic<int> ends_soon_count = 0;  // objects of EndsSoon
+static_assert(std::atomic<int>::is_always_lock_free);
 
 // Interrupts within this time count as one, because wrappers such as `timeout` send an interrupt
 // twice: to the program and to its process group.
@@ -42,7 +43,8 @@ void Interrupt(int signal, std::atomic<bool>* flag) {
   if (!*flag) {
     const int error = errno;
     first_interrupt_ns = NowNanoseconds();
-    if (ends_soon && has_patience_timer) ::timer_settime(patience_timer, 0, &kPatience, nullptr);
+    if (ends_soon_count > 0 && has_patience_timer)
+      ::timer_settime(patience_timer, 0, &kPatience, nullptr);
     *flag = true;
     errno = error;
   } else if (signal == SIGINT && NowNanoseconds() - first_interrupt_ns > kOneInterrupt_ns) {
@@ -77,10 +79,10 @@ EndsSoon::EndsSoon() {
     // program ends when its work notices the flag.
     has_patience_timer = ::timer_create(CLOCK_MONOTONIC, nullptr, &patience_timer) == 0;
   }
-  ends_soon = true;
+  ++ends_soon_count;
 }
 
-EndsSoon::~EndsSoon() { ends_soon = false; }
+EndsSoon::~EndsSoon() { --ends_soon_count; }
 
 const std::atomic<bool>& CatchInterrupts() {
   static const EndsSoon always;

@@ -27,7 +27,8 @@ const std::atomic<bool>& CatchInterruptsOfJob();
 RenderSignals& CatchRenderSignals();
 
 // While an object exists, a signal that CatchRenderSignals() catches ends the program within the
-// time of CatchInterrupts(): for work before a render, which writes no checkpoint.
+// time of CatchInterrupts(): for work before a render, which writes no checkpoint. There may be
+// several objects, and a program that calls CatchInterrupts() may have some.
 class EndsSoon {
  public:
   EndsSoon();
