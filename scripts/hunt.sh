@@ -61,6 +61,9 @@ power() { # the power fails after every step of every writer
 databases() { # every value of every column of a package and of a store, and a thousand damages of each
   $python tests/run_test.py hostile_databases $bin/{lfrenderer,lfpreprocessor,lfcompressor,lfimport} --all
 }
+judgements() { # images and poses of every capture of the corpus, with every mistake
+  $python tests/run_test.py agreement_corpus $bin/{lfimport,lfsynth} "${LF_TEST_DATA:-../shared}" --all
+}
 matrix() { # cells of doc/matrix.md that cover all combinations of any three axes
   $python scripts/matrix.py $bin --strength 3
 }
@@ -70,7 +73,7 @@ mutants() { # planted mistakes, each of which some test must notice
 fuzz() { # every parser of foreign bytes
   scripts/fuzz.sh "${LF_FUZZ_MINUTES:-60}"
 }
-steps=(busy asan tsan tidy valgrind faults environment power databases matrix mutants fuzz)
+steps=(busy asan tsan tidy valgrind faults environment power databases judgements matrix mutants fuzz)
 
 
 list() {

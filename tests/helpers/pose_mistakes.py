@@ -261,7 +261,8 @@ def write_mistake(name, source, folder):
         (folder / new.parent).mkdir(exist_ok=True)
         if isinstance(mistake, Pixels):
             image = mistake.applied_to(Image.open(file))
-            image.save(folder / new, **({"quality": 95} if file.suffix.lower() in (".jpg", ".jpeg") else {}))
+            image.save(folder / new, **({"quality": 95} if file.suffix.lower() in (".jpg", ".jpeg")
+                                        else {"compress_level": 1}))
         else:
             os.symlink(file, folder / new)
         frame["file_path"] = str(new)
