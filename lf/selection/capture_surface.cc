@@ -2,35 +2,16 @@
 #include "lf/selection/capture_surface.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <optional>
 #include <utility>
 
+#include "lf/selection/principal_axes.h"
+
 namespace lf {
 namespace {
-
-// Sums are plain loops: a library may add in another order on another machine.
-double Dot(const Vec3& a, const Vec3& b) { return a.x() * b.x() + a.y() * b.y() + a.z() * b.z(); }
-double Length(const Vec3& a) { return std::sqrt(Dot(a, a)); }
-Vec3 Cross(const Vec3& a, const Vec3& b) {
-  return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(),
-          a.x() * b.y() - a.y() * b.x()};
-}
-Vec3 Unit(const Vec3& a) {
-  const double length = Length(a);
-  return {a.x() / length, a.y() / length, a.z() / length};
-}
-
-Vec3 MeanOf(const std::vector<Vec3>& points) {
-  Vec3 sum = Vec3::Zero();
-  for (const Vec3& point : points)
-    sum = {sum.x() + point.x(), sum.y() + point.y(), sum.z() + point.z()};
-  const auto count = static_cast<double>(points.size());
-  return {sum.x() / count, sum.y() / count, sum.z() / count};
-}
 
 // Returns finite positions relative to their mean.
 std::vector<Vec3> Centred(std::span<const Vec3> positions) {
@@ -41,47 +22,6 @@ std::vector<Vec3> Centred(std::span<const Vec3> positions) {
   const Vec3 mean = MeanOf(points);
   for (Vec3& p : points) p = {p.x() - mean.x(), p.y() - mean.y(), p.z() - mean.z()};
   return points;
-}
-
-// Orthogonal axes, and the variance of points along each of them, the largest first.
-struct PrincipalAxes {
-  std::array<Vec3, 3> axes;
-  std::array<double, 3> variances{};
-};
-
-// Jacobi's method (Golub, Van Loan, "Matrix Computations", 8.5): each rotation makes one element
-// beside the diagonal zero.
-PrincipalAxes AxesOf(const std::vector<Vec3>& points) {
-  constexpr int kSweeps = 12;
-  double m[3][3] = {}, v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  for (const Vec3& p : points)
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) m[i][j] += p[i] * p[j] / static_cast<double>(points.size());
-  for (int sweep = 0; sweep < kSweeps; ++sweep)
-    for (const auto& [p, q] : {std::pair(0, 1), std::pair(0, 2), std::pair(1, 2)}) {
-      if (m[p][q] == 0) continue;
-      const double tau = (m[q][q] - m[p][p]) / (2 * m[p][q]);
-      const double t = (tau >= 0 ? 1 : -1) / (std::abs(tau) + std::sqrt(1 + tau * tau));
-      const double c = 1 / std::sqrt(1 + t * t), s = t * c;
-      const auto turn = [c = c, s = s](double* a, double* b) {
-        const double old = *a;
-        *a = c * old - s * *b;
-        *b = s * old + c * *b;
-      };
-      for (auto& row : m) turn(&row[p], &row[q]);
-      for (int k = 0; k < 3; ++k) turn(&m[p][k], &m[q][k]);
-      for (auto& row : v) turn(&row[p], &row[q]);
-    }
-  std::array<int, 3> by_variance = {0, 1, 2};
-  std::stable_sort(by_variance.begin(), by_variance.end(),
-                   [&](int a, int b) { return m[a][a] > m[b][b]; });
-  PrincipalAxes result;
-  for (size_t k = 0; k < 3; ++k) {
-    const int column = by_variance[k];
-    result.axes[k] = {v[0][column], v[1][column], v[2][column]};
-    result.variances[k] = std::max(0.0, m[column][column]);
-  }
-  return result;
 }
 
 // Returns the centre of the sphere that fits the points, which must be relative to their mean.
@@ -203,19 +143,24 @@ Vec2 TurnOf(const std::vector<Vec2>& points) {
   return {cosine, sine};
 }
 
-// Turns the chart such that rows or columns are along its axes, which then agree with those of the
-// world as far as possible. The order is then the same if LF cameras are listed in another order.
-std::vector<Vec2> Turned(Chart chart) {
+// The axes of a surface, as vectors of a chart and, for the chart of a plane, of the world.
+struct RowAxes {
+  Vec2 x, y;
+  Vec3 x_world, y_world;
+};
+
+// Returns the axes along which rows or columns are, and which agree with those of the world as far
+// as possible. The order is then the same if LF cameras are listed in another order.
+RowAxes RowAxesOf(const Chart& chart) {
   const Vec2 turn = TurnOf(chart.points);
-  const auto turned = [&](double x, double y) {
-    return Vec2(turn.x() * x + turn.y() * y, turn.x() * y - turn.y() * x);
+  RowAxes axes{{turn.x(), turn.y()}, {-turn.y(), turn.x()}, {}, {}};
+  const auto in_world = [&](const Vec2& axis) {
+    Vec3 world;
+    for (int k = 0; k < 3; ++k) world[k] = axis.x() * chart.right[k] + axis.y() * chart.up[k];
+    return world;
   };
-  Vec3 right, up;
-  for (int k = 0; k < 3; ++k) {
-    const Vec2 axis = turned(chart.right[k], chart.up[k]);
-    right[k] = axis.x();
-    up[k] = axis.y();
-  }
+  axes.x_world = in_world(axes.x);
+  axes.y_world = in_world(axes.y);
   constexpr double kMargin = 1e-6;
   const auto leads = [&](const Vec3& a, const Vec3& b) {  // a is rather the x axis than b
     for (int k = 0; k < 3; ++k)
@@ -223,22 +168,40 @@ std::vector<Vec2> Turned(Chart chart) {
         return std::abs(a[k]) > std::abs(b[k]);
     return true;
   };
-  const auto sign = [&](const Vec3& a) {
-    for (int k = 0; k < 3; ++k)
-      if (std::abs(a[k]) > kMargin) return a[k] > 0 ? 1.0 : -1.0;
-    return 1.0;
+  const auto make_positive = [&](Vec2* axis, Vec3* world) {
+    for (int k = 0; k < 3; ++k) {
+      if (!(std::abs((*world)[k]) > kMargin)) continue;
+      if ((*world)[k] > 0) return;
+      *axis = {-axis->x(), -axis->y()};
+      *world = {-world->x(), -world->y(), -world->z()};
+      return;
+    }
   };
-  const bool swaps = !leads(right, up);
-  const double sign_right = sign(right), sign_up = sign(up);
-  for (Vec2& p : chart.points) {
-    const Vec2 q = turned(p.x(), p.y());
-    const double x = sign_right * q.x(), y = sign_up * q.y();
-    p = swaps ? Vec2(y, x) : Vec2(x, y);
+  make_positive(&axes.x, &axes.x_world);
+  make_positive(&axes.y, &axes.y_world);
+  if (!leads(axes.x_world, axes.y_world)) {
+    std::swap(axes.x, axes.y);
+    std::swap(axes.x_world, axes.y_world);
   }
+  return axes;
+}
+
+// Returns the points of the chart along RowAxesOf().
+std::vector<Vec2> Turned(Chart chart) {
+  const RowAxes axes = RowAxesOf(chart);
+  for (Vec2& p : chart.points)
+    p = {axes.x.x() * p.x() + axes.x.y() * p.y(), axes.y.x() * p.x() + axes.y.y() * p.y()};
   return std::move(chart.points);
 }
 
 }  // namespace
+
+PlaneAxes PlaneAxesOf(std::span<const Vec3> positions) {
+  if (positions.empty()) return {};
+  const std::vector<Vec3> points = Centred(positions);
+  const RowAxes axes = RowAxesOf(PlaneChart(points, AxesOf(points)));
+  return {axes.x_world, axes.y_world, Cross(axes.x_world, axes.y_world)};
+}
 
 std::vector<SurfacePoint> SurfaceOf(std::span<const Vec3> positions) {
   if (positions.empty()) return {};

@@ -27,4 +27,16 @@ struct SurfacePoint {
 // that all machines return the same points. Numbers that are not finite count as 0.
 std::vector<SurfacePoint> SurfaceOf(std::span<const Vec3> positions);
 
+// Orthogonal unit vectors.
+struct PlaneAxes {
+  Vec3 x = Vec3::UnitX();
+  Vec3 y = Vec3::UnitY();
+  Vec3 z = Vec3::UnitZ();
+};
+
+// Returns x and y in the plane of least variance of the positions, along rows and columns if most
+// LF cameras stand in such, and z across this plane. The result is the same on all machines, as
+// that of SurfaceOf().
+PlaneAxes PlaneAxesOf(std::span<const Vec3> positions);
+
 }  // namespace lf
