@@ -28,6 +28,9 @@ class PathFrames {
   double fps() const { return whole_.fps; }
   double unit_m() const { return whole_.unit_m; }
   bool has_focal_surface() const { return whole_.focal_surface.has_value(); }
+  const std::optional<FocalSurfaceSource>& focal_surface() const { return whole_.focal_surface; }
+  // Returns true if the path states recording times (its key `time`).
+  bool moves_through_time() const { return described_ && described_->recording; }
   // Returns the radius of the widest opening among all frames, from which the rotation of closing
   // blades is counted; 0 if it does not depend on it.
   double widest_radius_w() const { return widest_radius_w_; }

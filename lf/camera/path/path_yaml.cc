@@ -174,11 +174,19 @@ Result<CameraPath> ParsePathYaml(std::string_view text, std::string_view name,
   return EvaluatePath(frames);
 }
 
+Result<PathFrames> ReadPathFrames(const std::filesystem::path& path,
+                                  std::optional<double> light_field_unit_m,
+                                  const ReadTransmission& read_transmission) {
+  LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(path, kMaxYamlBytes));
+  return ParsePathFrames(text, path.string(), light_field_unit_m, read_transmission);
+}
+
 Result<CameraPath> ReadPathYaml(const std::filesystem::path& path,
                                 std::optional<double> light_field_unit_m,
                                 const ReadTransmission& read_transmission) {
-  LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(path, kMaxYamlBytes));
-  return ParsePathYaml(text, path.string(), light_field_unit_m, read_transmission);
+  LF_ASSIGN_OR_RETURN(const PathFrames frames,
+                      ReadPathFrames(path, light_field_unit_m, read_transmission));
+  return EvaluatePath(frames);
 }
 
 }  // namespace lf

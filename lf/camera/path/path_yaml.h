@@ -38,6 +38,9 @@ Result<CameraPath> ParsePathYaml(std::string_view text, std::string_view name,
 Result<PathFrames> ParsePathFrames(std::string_view text, std::string_view name,
                                    std::optional<double> light_field_unit_m,
                                    const ReadTransmission& read_transmission = {});
+Result<PathFrames> ReadPathFrames(const std::filesystem::path& path,
+                                  std::optional<double> light_field_unit_m,
+                                  const ReadTransmission& read_transmission = {});
 Result<CameraPath> ReadPathYaml(const std::filesystem::path& path,
                                 std::optional<double> light_field_unit_m,
                                 const ReadTransmission& read_transmission = {});

@@ -88,16 +88,16 @@ std::vector<fs::path> FilesOfPath(const fs::path& path) {
   const auto place = FindPath(path);
   if (!place || place->kind != PathKind::kYaml) return files;
   // The reader of pictures only takes their names, so that the path is not read to its end.
-  const auto read = ReadPathYaml(path, std::nullopt, [&](const std::string& picture) {
+  const auto read = ReadPathFrames(path, std::nullopt, [&](const std::string& picture) {
     files.push_back(path.parent_path() / picture);
     return Result<Transmission>(InputError(""));
   });
   // The path cannot be read to its end if it has a transmission, so that it is read once more.
-  const auto whole = read ? read : ReadPathYaml(path, std::nullopt, PicturesBeside(path));
-  if (whole && whole->focal_surface)
+  const auto whole = read ? read : ReadPathFrames(path, std::nullopt, PicturesBeside(path));
+  if (whole && whole->focal_surface())
     for (uint32_t frame = 1; frame <= whole->frame_count(); ++frame) {
-      files.push_back(path.parent_path() / FileOfFrame(*whole->focal_surface, frame));
-      if (!HasFilePerFrame(*whole->focal_surface)) break;
+      files.push_back(path.parent_path() / FileOfFrame(*whole->focal_surface(), frame));
+      if (!HasFilePerFrame(*whole->focal_surface())) break;
     }
   return files;
 }

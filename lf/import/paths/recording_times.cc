@@ -7,8 +7,10 @@
 #include <set>
 #include <string>
 
+#include "lf/camera/path/path_yaml.h"
 #include "lf/core/file.h"
 #include "lf/import/paths/open_path.h"
+#include "lf/import/paths/transmission_file.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -24,8 +26,11 @@ Result<std::vector<double>> RecordingTimesOf(const fs::path& path) {
   LF_ASSIGN_OR_RETURN(const bool is_yaml, IsPathYaml(path));
   if (!is_yaml) return std::vector<double>();  // other forms have no such times
   LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(path));
-  // Most paths do not move through time. They are not evaluated.
+  // Most paths do not move through time. Their cameras are not computed.
   if (text.find("from") == std::string::npos) return std::vector<double>();
+  LF_ASSIGN_OR_RETURN(const PathFrames frames,
+                      ParsePathFrames(text, path.string(), std::nullopt, PicturesBeside(path)));
+  if (!frames.moves_through_time()) return std::vector<double>();
   PathOptions options;
   options.surface = PathOptions::Surface::kName;
   LF_ASSIGN_OR_RETURN(const CameraPath opened, OpenPath(path, options));
