@@ -401,7 +401,8 @@ Result<void> Densifier::AddRecorded(LfImageId id) {
     Hold(kind);
     return {};
   }
-  LF_ASSIGN_OR_RETURN(const CodedImage image, recorded_->Of(id));
+  LF_ASSIGN_OR_RETURN(const CodedImage image,
+                      recorded_->Of(id, [this] { return IsSet(options_.interrupted); }));
   LF_ASSIGN_OR_RETURN(const StoredKind kind, KindOfCode(image, light_field_.encoding));
   Hold(kind);
   return writer_->Add(id, image);
@@ -444,8 +445,10 @@ Result<void> Densifier::AddVirtual(const RecordedValues& values, size_t i) {
     LF_RETURN_IF_ERROR(writer_->AddTrust(id, image.trust));
   CodecSettings settings;
   settings.profile = CodecProfile::kLossless;
-  LF_RETURN_IF_ERROR(
-      writer_->Add(id, CodeOf(values.Of(image.light, all_.cameras[id.value].gain), settings)));
+  LF_ASSIGN_OR_RETURN(const CodedImage coded,
+                      CodeOf(values.Of(image.light, all_.cameras[id.value].gain), settings,
+                             [this] { return IsSet(options_.interrupted); }));
+  LF_RETURN_IF_ERROR(writer_->Add(id, coded));
   const std::lock_guard lock(mutex_);
   spare_.push_back(std::move(memory));
   return {};

@@ -32,15 +32,18 @@ Result<std::unique_ptr<RecordedCodes>> RecordedCodes::Open(const LightField& lig
   return recorded;
 }
 
-Result<CodedImage> RecordedCodes::Of(LfImageId id) const {
+Result<CodedImage> RecordedCodes::Of(LfImageId id,
+                                     const std::function<bool()>& is_interrupted) const {
   if (!copied_) {
     const Intrinsics& k = light_field_.Camera(id).intrinsics;
     LF_ASSIGN_OR_RETURN(const RecordedImage image,
                         ReadRecordedImage(light_field_, id, {0, 0, k.width_px, k.height_px}));
     CodecSettings settings;
     settings.profile = CodecProfile::kLossless;
-    LF_ASSIGN_OR_RETURN(std::optional<CodedImage> file, FileAsCode(light_field_, id, image));
-    return SmallerOf(CodeOf(image, settings), std::move(file));
+    LF_ASSIGN_OR_RETURN(std::optional<CodedImage> file,
+                        FileAsCode(light_field_, id, image, is_interrupted));
+    LF_ASSIGN_OR_RETURN(CodedImage code, CodeOf(image, settings, is_interrupted));
+    return SmallerOf(std::move(code), std::move(file));
   }
   return copied_->Of(id);
 }

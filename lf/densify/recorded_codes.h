@@ -3,6 +3,7 @@
 // this folder.
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "lf/core/ids.h"
@@ -28,8 +29,9 @@ class RecordedCodes {
 
   // Returns an LF image that can be read. An image file is encoded without loss, or kept if that is
   // smaller; the encoded image of a packed store is copied, which loses nothing more. May be called
-  // by many threads at the same time. kInput: the LF image cannot be read.
-  Result<CodedImage> Of(LfImageId id) const;
+  // by many threads at the same time. kInput: the LF image cannot be read. kInterrupted:
+  // is_interrupted() returned true; it may be empty.
+  Result<CodedImage> Of(LfImageId id, const std::function<bool()>& is_interrupted = {}) const;
 
   // Sets PackedStorePlan::codec and display_levels.
   void Describe(PackedStorePlan* plan) const;

@@ -36,8 +36,8 @@ struct CodeError {
 // step is 16, which is about 1 % of the radiance.
 double GreyStep(const RadianceEncoding& encoding, StoredValues values);
 
-// Returns the error of one image: the difference of `decoded`, which must be the whole image, from
-// the original `coded`.
+// Returns the error of a part of one image: the difference of `decoded` from the same pixels of the
+// original `coded`.
 CodeError ErrorOf(const CodecPixels& coded, const DecodedPart& decoded, double grey_step);
 
 }  // namespace lf

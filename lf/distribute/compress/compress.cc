@@ -50,7 +50,8 @@ PackedStorePlan PlanOf(const CompressSource& source, const CompressOptions& opti
   plan.rects = source.rects;
   plan.codec = NameOf(settings, options.files, factors);
   plan.films = options.use != nullptr ? std::optional(options.use->films) : source.films;
-  plan.display_levels = ImageCoder(source.light_field.encoding, settings).display_levels();
+  plan.display_levels =
+      ImageCoder(source.light_field.encoding, settings, KeepFiles::kNone, {}).display_levels();
   if (copied != nullptr) copied->Describe(&plan);
   plan.shard_bytes = options.shard_bytes;
   plan.part_count = PartCount(options, settings, copied != nullptr);
@@ -162,6 +163,10 @@ void Compressor::AddOne(PackedStoreWriter* writer, LfImageId id) {
 
   const std::lock_guard lock(mutex_);
   report_.encode_cpu_s += static_cast<double>(timer.Nanoseconds()) * 1e-9;
+  if (error && error->kind == ErrorKind::kInterrupted) {
+    ended_ = true;
+    return;
+  }
   ++now_.done;
   if (error) {
     // Only an LF image that is broken itself (kInput) is skipped. If the machine lacks memory or
@@ -185,7 +190,7 @@ Result<Compressor::Coded> Compressor::Encode(LfImageId id) const {
   Coded coded;
   LF_ASSIGN_OR_RETURN(coded.image,
                       coder_->CodeOrFile(light_field, id, image, factors_.Of(id.value)));
-  coded.lost = coder_->ErrorOf(image, coded.image);
+  LF_ASSIGN_OR_RETURN(coded.lost, coder_->ErrorOf(image, coded.image));
   coded.pixel_bytes =
       std::visit([](const auto& pixels) { return pixels.size_bytes(); }, image.pixels);
   coded.is_rounded = image.is_rounded && coded.image.values != StoredValues::kFile;
@@ -248,7 +253,8 @@ Result<void> Compressor::CheckFiles(const PackedStoreWriter& writer) {
 }
 
 Result<void> Compressor::Write(FileLock lock) {
-  coder_.emplace(source_.light_field.encoding, settings_, options_.files);
+  coder_.emplace(source_.light_field.encoding, settings_, options_.files,
+                 [this] { return IsInterrupted(); });
   LF_ASSIGN_OR_RETURN(PackedStoreWriter writer,
                       OpenWriter(source_, options_, plan_, std::move(lock)));
   LF_RETURN_IF_ERROR(CheckFiles(writer));

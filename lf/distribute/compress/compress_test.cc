@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "lf/distribute/compress/code_quality.h"
+#include "lf/distribute/compress/image_coder.h"
 
 namespace lf {
 namespace {
@@ -29,6 +30,71 @@ TEST(CodeQuality, PsnrIsOfAllValuesTogether) {
   error += ErrorOf(a, DecodedPart{a, {0, 0, 10, 10}}, 1);
   EXPECT_NEAR(error.PsnrDb(), 10 * std::log10(255.0 * 255 * 200 / 100), 1e-9);
   EXPECT_TRUE(std::isinf(CodeError{}.PsnrDb()));
+}
+
+TEST(CodeQuality, ErrorsOfPartsAddUp) {
+  Image<uint8_t> a(7, 5, 3, 100), b = a;
+  b.at(6, 2, 1) = 90;
+  b.at(0, 4, 2) = 103;
+  CodeError parts;
+  for (const PixelRect& rect : {PixelRect{0, 0, 7, 3}, PixelRect{0, 3, 4, 5}, {4, 3, 7, 5}}) {
+    Image<uint8_t> part(rect.width(), rect.height(), 3);
+    for (int y = 0; y < rect.height(); ++y)
+      for (int x = 0; x < rect.width(); ++x)
+        for (int c = 0; c < 3; ++c) part.at(x, y, c) = b.at(rect.x_begin + x, rect.y_begin + y, c);
+    parts += ErrorOf(a, DecodedPart{part, rect}, 1);
+  }
+  const CodeError whole = ErrorOf(a, DecodedPart{b, {0, 0, 7, 5}}, 1);
+  EXPECT_EQ(parts.count, whole.count);
+  EXPECT_NEAR(parts.squared, whole.squared, 1e-15);
+  EXPECT_NEAR(whole.squared, 109.0 / (255 * 255), 1e-15);
+}
+
+// Returns an LF image that is higher than two tiles.
+RecordedImage TallImage() {
+  Image<uint16_t> pixels(9, 2100);
+  uint32_t state = 1;
+  for (uint16_t& value : pixels.pixels()) {
+    state = state * 1664525 + 1013904223;
+    value = static_cast<uint16_t>(20000 + (state >> 20));
+  }
+  RecordedImage image;
+  image.pixels = std::move(pixels);
+  image.values = StoredValues::kUint16;
+  image.rect = {0, 0, 9, 2100};
+  return image;
+}
+
+TEST(ImageCoder, TheErrorIsThatOfTheWholeImage) {
+  const RecordedImage image = TallImage();
+  const ImageCoder coder(RadianceEncoding(), CodecSettings(), KeepFiles::kNone, {});
+  const Result<CodedImage> coded = coder.Code(image);
+  ASSERT_TRUE(coded);
+  DecodedPart decoded;
+  ASSERT_TRUE(DecodeImage(coded->code, &decoded));
+  const CodeError whole =
+      ErrorOf(image.pixels, decoded, GreyStep(RadianceEncoding(), StoredValues::kUint16));
+  const Result<CodeError> error = coder.ErrorOf(image, *coded);
+  ASSERT_TRUE(error);
+  EXPECT_GT(whole.squared, 0);
+  EXPECT_EQ(error->count, whole.count);
+  EXPECT_NEAR(error->squared / whole.squared, 1, 1e-12);
+}
+
+TEST(ImageCoder, EncodingAndMeasuringEndIfInterrupted) {
+  RecordedImage image = TallImage();
+  bool is_interrupted = false;
+  const ImageCoder coder(RadianceEncoding(), CodecSettings(), KeepFiles::kNone,
+                         [&] { return is_interrupted; });
+  const Result<CodedImage> coded = coder.Code(image);
+  ASSERT_TRUE(coded);
+  is_interrupted = true;
+  const Result<CodedImage> again = coder.Code(image);
+  ASSERT_FALSE(again);
+  EXPECT_EQ(again.error().kind, ErrorKind::kInterrupted);
+  const Result<CodeError> error = coder.ErrorOf(image, *coded);
+  ASSERT_FALSE(error);
+  EXPECT_EQ(error.error().kind, ErrorKind::kInterrupted);
 }
 
 // Returns a light field of 9 LF images that have no files.

@@ -89,11 +89,13 @@ Result<double> FindThreshold(const CompressSource& source, const CodecSettings& 
   const auto error_at = [&](double threshold) {
     CodecSettings of_threshold = settings;
     of_threshold.threshold = threshold;
-    const ImageCoder coder(light_field.encoding, of_threshold);
+    const ImageCoder coder(light_field.encoding, of_threshold, KeepFiles::kNone, is_interrupted);
     std::vector<CodeError> errors(images.size());
     pool.ForEach(images.size(), [&](size_t i) {
-      if (images[i] && !is_interrupted())
-        errors[i] = coder.ErrorOf(*images[i], coder.Code(*images[i]));
+      if (!images[i]) return;
+      const Result<CodedImage> coded = coder.Code(*images[i]);
+      if (!coded) return;
+      if (const Result<CodeError> error = coder.ErrorOf(*images[i], *coded)) errors[i] = *error;
     });
     CodeError together;
     for (const CodeError& error : errors) together += error;

@@ -12,12 +12,16 @@ namespace lf {
 namespace {
 
 constexpr double kLargest = 65535;
+constexpr int kBandRows = 1024;  // rows that are decoded together: those of a tile of the encoder
 
 }  // namespace
 
 ImageCoder::ImageCoder(const RadianceEncoding& encoding, const CodecSettings& settings,
-                       KeepFiles files)
-    : encoding_(encoding), settings_(settings), files_(files) {
+                       KeepFiles files, std::function<bool()> is_interrupted)
+    : encoding_(encoding),
+      settings_(settings),
+      files_(files),
+      is_interrupted_(std::move(is_interrupted)) {
   if (encoding.transfer == Transfer::kLinear && LevelsFit(encoding, 16))
     curve_.emplace(encoding.black_level, encoding.white_level.value_or(kLargest));
 }
@@ -36,12 +40,14 @@ Image<uint16_t> ImageCoder::OnCurve(const CodecPixels& pixels) const {
 Result<CodedImage> ImageCoder::CodeOrFile(const LightField& light_field, LfImageId id,
                                           const RecordedImage& image, double factor) const {
   if (files_ == KeepFiles::kNone) return Code(image, factor);
-  LF_ASSIGN_OR_RETURN(std::optional<CodedImage> file, FileAsCode(light_field, id, image));
+  LF_ASSIGN_OR_RETURN(std::optional<CodedImage> file,
+                      FileAsCode(light_field, id, image, is_interrupted_));
   if (file && files_ == KeepFiles::kAll) return *std::move(file);
-  return SmallerOf(Code(image, factor), std::move(file));
+  LF_ASSIGN_OR_RETURN(CodedImage code, Code(image, factor));
+  return SmallerOf(std::move(code), std::move(file));
 }
 
-CodedImage ImageCoder::Code(const RecordedImage& image, double factor) const {
+Result<CodedImage> ImageCoder::Code(const RecordedImage& image, double factor) const {
   CodecSettings settings = settings_;
   settings.threshold *= factor;
   if (IsLinear(image) && settings.profile == CodecProfile::kDefault) {
@@ -49,22 +55,31 @@ CodedImage ImageCoder::Code(const RecordedImage& image, double factor) const {
     RecordedImage on_curve = image;
     on_curve.pixels = OnCurve(image.pixels);
     on_curve.values = StoredValues::kDisplay16;
-    return CodeOf(on_curve, settings);
+    return CodeOf(on_curve, settings, is_interrupted_);
   }
   settings.threshold *= GreyStep(encoding_, image.values);
-  return CodeOf(image, settings);
+  return CodeOf(image, settings, is_interrupted_);
 }
 
-CodeError ImageCoder::ErrorOf(const RecordedImage& image, const CodedImage& coded) const {
+Result<CodeError> ImageCoder::ErrorOf(const RecordedImage& image, const CodedImage& coded) const {
   if (coded.values == StoredValues::kFile)
-    return {0, std::visit([](const auto& pixels) { return pixels.pixels().size(); }, image.pixels)};
+    return CodeError{
+        0, std::visit([](const auto& pixels) { return pixels.pixels().size(); }, image.pixels)};
+  const bool is_linear = IsLinear(image);
+  const double grey_step = is_linear ? curve_->grey_step() : GreyStep(encoding_, image.values);
+  const CodecPixels on_curve = is_linear ? OnCurve(image.pixels) : CodecPixels();
+  CodeError error;
   DecodedPart decoded;
-  const Result<void> result = DecodeImage(coded.code, &decoded);
-  LF_CHECK(result.has_value());
-  if (!IsLinear(image))
-    return lf::ErrorOf(image.pixels, decoded, GreyStep(encoding_, image.values));
-  if (coded.values != StoredValues::kDisplay16) decoded.pixels = OnCurve(decoded.pixels);
-  return lf::ErrorOf(OnCurve(image.pixels), decoded, curve_->grey_step());
+  for (int y = 0; y < image.rect.height(); y += kBandRows) {
+    if (is_interrupted_ && is_interrupted_()) return Error{ErrorKind::kInterrupted, "interrupted"};
+    const PixelRect band = {0, y, image.rect.width(), std::min(y + kBandRows, image.rect.height())};
+    const Result<void> result = DecodeImage(coded.code, band, &decoded);
+    LF_CHECK(result.has_value() && decoded.rect == band);
+    if (is_linear && coded.values != StoredValues::kDisplay16)
+      decoded.pixels = OnCurve(decoded.pixels);
+    error += lf::ErrorOf(is_linear ? on_curve : image.pixels, decoded, grey_step);
+  }
+  return error;
 }
 
 }  // namespace lf

@@ -2,6 +2,7 @@
 // Encodes one LF image and measures the error. Internal to this folder.
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "lf/core/ids.h"
@@ -18,10 +19,13 @@
 namespace lf {
 
 // An encoder for one light field and settings. The threshold of the settings is in grey steps.
+// Encoding or measuring a large image takes seconds: functions that return a Result return
+// kInterrupted soon after is_interrupted() returns true.
 class ImageCoder {
  public:
-  ImageCoder(const RadianceEncoding& encoding, const CodecSettings& settings,
-             KeepFiles files = KeepFiles::kNone);
+  //   is_interrupted  called by all threads that call the ImageCoder; may be empty
+  ImageCoder(const RadianceEncoding& encoding, const CodecSettings& settings, KeepFiles files,
+             std::function<bool()> is_interrupted);
 
   // Returns the LF image `image` as the store keeps it: encoded, or as its file. kInput: the file
   // cannot be read.
@@ -30,7 +34,7 @@ class ImageCoder {
                                 const RecordedImage& image, double factor = 1) const;
 
   // Encodes an image. The default profile encodes linear values of 16 bits along the display curve.
-  CodedImage Code(const RecordedImage& image, double factor = 1) const;
+  Result<CodedImage> Code(const RecordedImage& image, double factor = 1) const;
 
   // Returns the levels of the display curve if images are encoded along it.
   std::optional<DisplayLevels> display_levels() const;
@@ -38,7 +42,7 @@ class ImageCoder {
   // Measures the error in stored values; none for a file. The error of linear values of 16 bits is
   // measured along the display curve for all profiles, because equal errors along this curve are
   // equally visible.
-  CodeError ErrorOf(const RecordedImage& image, const CodedImage& coded) const;
+  Result<CodeError> ErrorOf(const RecordedImage& image, const CodedImage& coded) const;
 
  private:
   bool IsLinear(const RecordedImage& image) const {
@@ -49,6 +53,7 @@ class ImageCoder {
   const RadianceEncoding encoding_;
   const CodecSettings settings_;
   const KeepFiles files_;
+  const std::function<bool()> is_interrupted_;
   std::optional<DisplayCurve> curve_;
 };
 

@@ -37,7 +37,8 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
   const LightField& light_field = source.light_field;
   LF_ASSIGN_OR_RETURN(const std::vector<PackedCode> codes, FindCodes(options.store, light_field));
 
-  const ImageCoder coder(light_field.encoding, options.settings, options.files);
+  const ImageCoder coder(light_field.encoding, options.settings, options.files,
+                         options.is_interrupted);
   std::mutex mutex;
   std::vector<std::unique_ptr<PackedCodeReader>> readers;
   size_t done = 0, verified = 0;
@@ -66,6 +67,7 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
   const auto check = [&](LfImageId id) -> Result<void> {
     const PackedCode& code = codes[id.value];
     const Result<CodedImage> made = encode(id);
+    if (!made && made.error().kind == ErrorKind::kInterrupted) return made.error();
     if (code.bytes == 0) {
       if (made)
         return InputError(
@@ -104,13 +106,14 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
   };
   bool interrupted = false;
   pool.ForEach(ids.size(), [&](size_t i) {
-    if (options.is_interrupted()) {
-      const std::lock_guard lock(mutex);
+    const Result<void> result =
+        options.is_interrupted() ? Error{ErrorKind::kInterrupted, "interrupted"} : check(ids[i]);
+    const std::lock_guard lock(mutex);
+    if (!result && result.error().kind == ErrorKind::kInterrupted) {
       interrupted = true;
       return;
     }
-    if (const Result<void> result = check(ids[i]); !result) faults[i] = result.error().message;
-    const std::lock_guard lock(mutex);
+    if (!result) faults[i] = result.error().message;
     progress(++done);
   });
   if (interrupted)

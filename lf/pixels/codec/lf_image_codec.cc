@@ -31,14 +31,23 @@ ImageView<Pixel> Part(ImageView<Pixel> image, const PixelRect& rect) {
   return image;
 }
 
+using IsInterrupted = std::function<bool()>;  // may be empty
+
+Result<void> CheckInterrupted(const IsInterrupted& is_interrupted) {
+  if (is_interrupted && is_interrupted()) return Error{ErrorKind::kInterrupted, "interrupted"};
+  return {};
+}
+
 // Returns the encoded image: head, table of contents and sections. Sections are ordered by
 // resolution, then by tile.
 template <class Tile>
-std::string Assembled(const CodeHead& head, const std::vector<Tile>& tiles) {
+Result<std::string> Assembled(const CodeHead& head, const std::vector<Tile>& tiles,
+                              const IsInterrupted& is_interrupted) {
   std::string code, sections;
   AppendHead(head, &code);
   for (int resolution = 0; resolution <= head.info.levels; ++resolution)
     for (const Tile& tile : tiles) {
+      LF_RETURN_IF_ERROR(CheckInterrupted(is_interrupted));
       const std::string section = CodeOfSection(head, tile, resolution);
       AppendNumber(section.size(), &code);
       sections += section;
@@ -47,11 +56,14 @@ std::string Assembled(const CodeHead& head, const std::vector<Tile>& tiles) {
 }
 
 template <class Pixel>
-std::string Encode(ImageView<const Pixel> pixels, const CodecSettings& settings, CodeHead head) {
+Result<std::string> Encode(ImageView<const Pixel> pixels, const CodecSettings& settings,
+                           CodeHead head, const IsInterrupted& is_interrupted) {
   if (settings.profile == CodecProfile::kThesis) {
     std::vector<HaarTile> tiles;
-    for (size_t i = 0; i < head.tile_count(); ++i)
+    for (size_t i = 0; i < head.tile_count(); ++i) {
+      LF_RETURN_IF_ERROR(CheckInterrupted(is_interrupted));
       tiles.push_back(TransformTile(head, settings.threshold, Part(pixels, head.TileRect(i))));
+    }
     head.quantizer = settings.quantizer;
     head.low = tiles.front().low;
     head.high = tiles.front().high;
@@ -59,17 +71,18 @@ std::string Encode(ImageView<const Pixel> pixels, const CodecSettings& settings,
       head.low = std::min<int64_t>(head.low, tile.low);
       head.high = std::max<int64_t>(head.high, tile.high);
     }
-    return Assembled(head, tiles);
+    return Assembled(head, tiles, is_interrupted);
   }
   SetSteps(settings, &head);
   std::vector<QuantizedTile> tiles;
   int32_t largest = 0;
   for (size_t i = 0; i < head.tile_count(); ++i) {
+    LF_RETURN_IF_ERROR(CheckInterrupted(is_interrupted));
     tiles.push_back(QuantizeTile(Transform::kSimd, head, Part(pixels, head.TileRect(i))));
     largest = std::max(largest, tiles.back().largest);
   }
   head.coefficient_bytes = head.info.bits == 8 && FitsInTwoBytes(largest) ? 2 : 4;
-  return Assembled(head, tiles);
+  return Assembled(head, tiles, is_interrupted);
 }
 
 // Head and sections of an encoded image.
@@ -236,6 +249,12 @@ Result<void> CheckSettings(const CodecSettings& settings) {
 
 std::string EncodeImage(const CodecPixels& pixels, PixelLayout layout,
                         const CodecSettings& settings) {
+  return *EncodeImage(pixels, layout, settings, {});
+}
+
+Result<std::string> EncodeImage(const CodecPixels& pixels, PixelLayout layout,
+                                const CodecSettings& settings,
+                                const std::function<bool()>& is_interrupted) {
   LF_CHECK(CheckSettings(settings).has_value());
   return std::visit(
       [&]<class Pixel>(const Image<Pixel>& image) {
@@ -245,7 +264,7 @@ std::string EncodeImage(const CodecPixels& pixels, PixelLayout layout,
         CodeHead head;
         head.info = {image.width(),     image.height(),   layout,
                      8 * sizeof(Pixel), settings.profile, settings.levels};
-        return Encode(image.view(), settings, std::move(head));
+        return Encode(image.view(), settings, std::move(head), is_interrupted);
       },
       pixels);
 }

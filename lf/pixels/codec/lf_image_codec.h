@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -65,6 +66,12 @@ Result<void> CheckSettings(const CodecSettings& settings);
 // number of channels of the layout. CheckSettings() must accept the settings.
 std::string EncodeImage(const CodecPixels& pixels, PixelLayout layout,
                         const CodecSettings& settings);
+// Encodes an image that may take seconds. kInterrupted: is_interrupted() returned true.
+//   is_interrupted  called by this thread before each tile is transformed, and before each packet
+//                   is compressed; may be empty
+Result<std::string> EncodeImage(const CodecPixels& pixels, PixelLayout layout,
+                                const CodecSettings& settings,
+                                const std::function<bool()>& is_interrupted);
 
 // Properties of an encoded image, as its head states them.
 struct CodeInfo {

@@ -134,6 +134,32 @@ TEST(LfImageCodec, LosslessIsExact) {
   }
 }
 
+TEST(LfImageCodec, EncodingEndsAtEachTileAndPacketIfInterrupted) {
+  std::mt19937 random(7);
+  const CodecPixels pixels = AnyPicture(random, 1025, 1030, PixelLayout::kGrey);  // four tiles
+  for (const CodecProfile profile :
+       {CodecProfile::kThesis, CodecProfile::kDefault, CodecProfile::kLossless}) {
+    CodecSettings settings;
+    settings.profile = profile;
+    settings.levels = 2;
+    const auto encoded = [&](const std::function<bool()>& is_interrupted) {
+      return EncodeImage(pixels, PixelLayout::kGrey, settings, is_interrupted);
+    };
+    int asked = 0;
+    const Result<std::string> whole = encoded([&] { return ++asked < 0; });
+    ASSERT_TRUE(whole);
+    EXPECT_EQ(*whole, EncodeImage(pixels, PixelLayout::kGrey, settings));
+    EXPECT_EQ(asked, 4 + 3 * 4);  // tiles, and packets of three resolutions
+    for (int moment = 1; moment <= asked; ++moment) {
+      int now = 0;
+      const Result<std::string> part = encoded([&] { return ++now >= moment; });
+      ASSERT_FALSE(part) << moment;
+      EXPECT_EQ(part.error().kind, ErrorKind::kInterrupted);
+      EXPECT_EQ(now, moment);
+    }
+  }
+}
+
 // Encodes the example of doc/formats/lf_image.md.
 TEST(LfImageCodec, TheExampleOfThePage) {
   Image<uint8_t> image(2, 2);

@@ -118,16 +118,21 @@ uint64_t SizeOf(const fs::path& path) {
   return error ? 0 : size;
 }
 
-// Returns everything of an encoded image but the pixels.
-CodedImage MaskOf(const RecordedImage& image) {
+// Returns everything of an encoded image but the pixels. kInterrupted as CodeOf().
+Result<CodedImage> MaskOf(const RecordedImage& image, const std::function<bool()>& is_interrupted) {
   CodedImage coded;
   coded.values = image.values;
   coded.rect = image.rect;
   CodecSettings settings;
   settings.profile = CodecProfile::kLossless;
-  if (!image.mask.empty()) coded.mask = EncodeImage(image.mask, PixelLayout::kGrey, settings);
-  if (!image.opacities.empty())
-    coded.mask = EncodeImage(image.opacities, PixelLayout::kGrey, settings);
+  if (!image.mask.empty()) {
+    LF_ASSIGN_OR_RETURN(coded.mask,
+                        EncodeImage(image.mask, PixelLayout::kGrey, settings, is_interrupted));
+  }
+  if (!image.opacities.empty()) {
+    LF_ASSIGN_OR_RETURN(coded.mask,
+                        EncodeImage(image.opacities, PixelLayout::kGrey, settings, is_interrupted));
+  }
   coded.source_bytes = image.source_bytes;
   return coded;
 }
@@ -180,11 +185,12 @@ PixelRect RectToRecord(const LightField& light_field, LfImageId id, const PixelR
 }
 
 Result<std::optional<CodedImage>> FileAsCode(const LightField& light_field, LfImageId id,
-                                             const RecordedImage& image) {
+                                             const RecordedImage& image,
+                                             const std::function<bool()>& is_interrupted) {
   const fs::path path = light_field.ImagePath(id);
   if (image.rect != WholeOf(light_field, id) || PictureViewOf(path))
     return std::optional<CodedImage>();
-  CodedImage coded = MaskOf(image);
+  LF_ASSIGN_OR_RETURN(CodedImage coded, MaskOf(image, is_interrupted));
   coded.values = StoredValues::kFile;
   LF_ASSIGN_OR_RETURN(coded.code, ReadFile(path));
   return std::optional(std::move(coded));
@@ -195,8 +201,14 @@ CodedImage SmallerOf(CodedImage code, std::optional<CodedImage> file) {
 }
 
 CodedImage CodeOf(const RecordedImage& image, const CodecSettings& settings) {
-  CodedImage coded = MaskOf(image);
-  coded.code = EncodeImage(image.pixels, image.layout, settings);
+  return *CodeOf(image, settings, {});
+}
+
+Result<CodedImage> CodeOf(const RecordedImage& image, const CodecSettings& settings,
+                          const std::function<bool()>& is_interrupted) {
+  LF_ASSIGN_OR_RETURN(CodedImage coded, MaskOf(image, is_interrupted));
+  LF_ASSIGN_OR_RETURN(coded.code,
+                      EncodeImage(image.pixels, image.layout, settings, is_interrupted));
   if (coded.mask.empty()) coded.front_ends = *FrontEndsOf(coded.code);
   return coded;
 }

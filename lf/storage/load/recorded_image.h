@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -60,12 +61,16 @@ PixelRect RectToRecord(const LightField& light_field, LfImageId id, const PixelR
 
 // Encodes the pixels by `settings`, and the mask or the opacities losslessly.
 CodedImage CodeOf(const RecordedImage& image, const CodecSettings& settings);
+// kInterrupted: is_interrupted() returned true. It is called as by EncodeImage(), and may be empty.
+Result<CodedImage> CodeOf(const RecordedImage& image, const CodecSettings& settings,
+                          const std::function<bool()>& is_interrupted);
 
 // Returns the bytes of the LF image's file as its encoded image, with the encoded mask or
 // opacities. nullopt if `image` has only a part of the pixels, or the LF image is a view of a
-// larger picture. kInput: the file cannot be read.
+// larger picture. kInput: the file cannot be read. kInterrupted as CodeOf().
 Result<std::optional<CodedImage>> FileAsCode(const LightField& light_field, LfImageId id,
-                                             const RecordedImage& image);
+                                             const RecordedImage& image,
+                                             const std::function<bool()>& is_interrupted = {});
 
 // Returns the file if there is one and it is at most as large as the encoded image; otherwise the
 // encoded image.
