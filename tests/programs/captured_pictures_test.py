@@ -151,10 +151,17 @@ def sharp_share(picture, lf_image):
 
 
 class CapturedPicturesTest(FirstPictureCase):
+    def setUp(self):
+        super().setUp()
+        self.written = {}  # the folder that each function has written a capture to, unchanged
+
     def make(self, write, change=as_it_is):
         capture = pathlib.Path(tempfile.mkdtemp(prefix=f"{write.__name__} {change.__name__} ", dir=self.folder))
-        (capture / "images").mkdir()
-        write(capture)
+        if write not in self.written:
+            self.written[write] = self.folder / f"{write.__name__} as written"
+            (self.written[write] / "images").mkdir(parents=True)
+            write(self.written[write])
+        shutil.copytree(self.written[write], capture, dirs_exist_ok=True)
         change(capture)
         return capture
 
