@@ -59,8 +59,9 @@ class PlateReader {
 
   // Adds all rays to a plate of the file's size and kind. Takes about a megabyte of memory
   // beside the plate. Must be called only once. kInput if the file is truncated or damaged; the
-  // plate then holds a part of the rays and must not be used.
-  Result<void> AddTo(SensorPlate* plate);
+  // plate then holds a part of the rays and must not be used. kInterrupted, with such a plate:
+  // is_interrupted, which is called every few rows and may be empty, returned true.
+  Result<void> AddTo(SensorPlate* plate, const std::function<bool()>& is_interrupted = {});
 
  private:
   explicit PlateReader(std::unique_ptr<entry_file::Source> source);

@@ -75,11 +75,13 @@ Result<void> PlateReader::ReadHead() {
   return {};
 }
 
-Result<void> PlateReader::AddTo(SensorPlate* plate) {
+Result<void> PlateReader::AddTo(SensorPlate* plate, const std::function<bool()>& is_interrupted) {
   LF_CHECK(plate->width() == width_ && plate->height() == height_ && plate->kind() == kind_);
   const int chunk_count = (height_ - 1) / rows_per_chunk_ + 1;
-  for (int chunk = 0; chunk < chunk_count; ++chunk)
+  for (int chunk = 0; chunk < chunk_count; ++chunk) {
+    if (is_interrupted && is_interrupted()) return Error{ErrorKind::kInterrupted, "interrupted"};
     LF_RETURN_IF_ERROR(AddChunk(static_cast<uint32_t>(chunk), plate));
+  }
   LF_RETURN_IF_ERROR(AddWide(plate));
   if (source_->left() != 0)
     return source_->Damaged(fmt::format("{} bytes follow its end", source_->left()));

@@ -105,6 +105,26 @@ TEST_F(PlateFile, GivesBackAllChannelsOfEachKindWideWordsIncluded) {
   }
 }
 
+TEST_F(PlateFile, ReadingEndsIfInterrupted) {
+  ThreadPool pool(2);
+  const fs::path path = folder_ / "a.plate";
+  ASSERT_TRUE(WritePlate(path, kEntries,
+                         testing::NoisePlate(317, 2000, 7, SensorPlate::kMaxCount, true), pool));
+  int asked = 0;
+  SensorPlate whole(317, 2000);
+  ASSERT_TRUE(PlateReader::Open(path)->AddTo(&whole, [&] { return ++asked < 0; }));
+  EXPECT_GT(asked, 3);
+  for (const int moment : {1, 2, asked / 2, asked}) {
+    int now = 0;
+    SensorPlate part(317, 2000);
+    const Result<void> added =
+        PlateReader::Open(path)->AddTo(&part, [&] { return ++now >= moment; });
+    ASSERT_FALSE(added);
+    EXPECT_EQ(added.error().kind, ErrorKind::kInterrupted);
+    EXPECT_EQ(now, moment);
+  }
+}
+
 // If an element gets more rays than a packed word can hold, they move to the wide table, and later
 // rays are packed again.
 TEST_F(PlateFile, KeepsTheRaysThatAWideElementGetsLater) {

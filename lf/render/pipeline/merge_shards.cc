@@ -350,7 +350,9 @@ class Merger {
             reader.kind() != first.kind)
           return InputError(fmt::format(
               "{}: was replaced while lfmerge read it: start lfmerge again", plate.path.string()));
-        if (const Result<void> added = reader.AddTo(&sum); !added) return WithRemedy(added.error());
+        const Result<void> added = reader.AddTo(&sum, [this] { return IsStopped(); });
+        if (!added && added.error().kind == ErrorKind::kInterrupted) return Interrupted();
+        if (!added) return WithRemedy(added.error());
       }
       ++now_.plate_count;
       if (progress_) progress_(now_);
