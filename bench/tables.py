@@ -86,6 +86,8 @@ TABLES = {
                             "'disk|rgb|prefiltered.*|bilinear|bicubic|mosaic|bilinear_0.5'",
                             "--cases disk --rounds 1"),
     "wavelet_choice": ("codec", "bench/wavelet_choice.py --data {data}", None),
+    **{f"prediction_gain-{table}": ("codec", f"bench/quality/prediction_gain.py {table} {{build}}/bin {{data}}", None)
+       for table in ("contexts", "gain", "choices", "steps")},
 }
 
 
