@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the pixels of one image lie in another one, if the scene is a plane: the homographies that
+// Finds the pixels of one image in another one, if the scene is a plane: the homographies that
 // planes of constant depth induce between two pinhole cameras (thesis 2.2), in integers. The
 // encoder makes them from a calibration and writes them down. A decoder computes with integers
 // alone, so that it finds the same positions on every machine.

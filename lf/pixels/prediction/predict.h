@@ -4,13 +4,13 @@
 //
 // The image is cut into square blocks. Each block has an index of inverse depth (plane_warp.h) and
 // the set of reference images that predict it, by their mean. Windows of neighbouring blocks
-// overlap, so that no edges appear: weights fall linearly from the centre of a block to the centres
-// of its neighbours. A *cell* is the square between the centres of four blocks; its pixels have the
+// overlap, so that no edges appear: weights fall evenly within a quarter of a block on both sides
+// of a border. A *cell* is the square between the centres of four blocks; its pixels have the
 // weights of these four.
 //
 // Pixels have 1 to 4 channels, which move together. A mosaic is predicted as the picture of its
-// squares of 2 x 2 pixels, with four channels: each colour is
-// predicted from values of the same colour.
+// squares of 2 x 2 pixels, with four channels: each colour is predicted from values of the same
+// colour.
 #pragma once
 
 #include <cstdint>

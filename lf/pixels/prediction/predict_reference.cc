@@ -67,9 +67,7 @@ void PredictReference(const PredictionPlan& plan, std::span<const ReferencePart<
       for (int i = 0; i < cell.count; ++i) {
         const CellTerm& term = cell.terms[i];
         SetMotion(plan.warps[term.reference], term.depth, x_begin, y_begin, bits, &motion);
-        const WarpedPosition& moved =
-            motion.is_uniform ? motion.squares[0][0]
-                              : motion.squares[(y - y_begin) / kSquare][(x - x_begin) / kSquare];
+        const WarpedPosition& moved = motion.At(x - x_begin, y - y_begin);
         const int64_t weight = WeightAt(term, x - x_begin, y - y_begin, bits);
         for (int channel = 0; channel < predicted.channels; ++channel) {
           const int64_t value = Interpolated(references[term.reference], x, y, channel, moved);

@@ -37,7 +37,9 @@ struct CellScratch {
   CellMotion motion;
   // Weighted sums of the values of the cell: [row][value], without gaps between rows.
   std::array<Lane, static_cast<size_t>(kMostCellSide) * kMostCellValues + kMostLanes> sums;
-  // Windows of the right block and of the left one, for each value of a row.
+  // Windows of the lower block for each row, and of the right block and the left one for each value
+  // of a row.
+  std::array<Lane, kMostCellSide> window;
   std::array<Lane, kMostCellValues + kMostLanes> right, left;
   // Pixels of a patch of a reference image that is not inside the pixels of this.
   std::array<Pixel, static_cast<size_t>(kPatchSide) * kPatchStride + kMostLanes> patch;
@@ -142,16 +144,14 @@ void AddPiece(const Patch<Pixel>& patch, const WarpedPosition& moved, const Cell
       return hn::Sub(sum, middle);
     };
     auto row_0 = next_row(), row_1 = next_row(), row_2 = next_row();
-    // The weight changes evenly from row to row.
     const auto upper = weighted(left, right, term.shares[0], term.shares[1]);
     const auto change = hn::Sub(weighted(left, right, term.shares[2], term.shares[3]), upper);
-    const int window = WindowOfNext(piece.y, block_bits);
-    const auto step = hn::Mul(change, hn::Set(d, static_cast<Lane>(kWindow >> block_bits)));
-    auto weight = hn::Add(hn::Mul(upper, hn::Set(d, Lane{kWindow})),
-                          hn::Mul(change, hn::Set(d, static_cast<Lane>(window))));
+    const auto first_weight = hn::Mul(upper, hn::Set(d, Lane{kWindow}));
     Lane* sums = scratch->sums.data() + static_cast<size_t>(piece.y) * row_values + first + x;
     for (int y = 0; y < piece.height; ++y, sums += row_values) {
       const auto row_3 = next_row();
+      const auto window = hn::Set(d, scratch->window[piece.y + y]);
+      const auto weight = hn::Add(first_weight, hn::Mul(change, window));
       if constexpr (sizeof(Pixel) == 1) {
         const auto value = hn::Add(
             hn::Add(hn::MulFixedPoint15(row_0, down_0), hn::MulFixedPoint15(row_1, down_1)),
@@ -163,7 +163,6 @@ void AddPiece(const Patch<Pixel>& patch, const WarpedPosition& moved, const Cell
         const auto value = hn::ShiftRight<2 * kTapBits>(hn::Add(sum, half));
         hn::StoreU(hn::Add(hn::LoadU(d, sums), hn::Mul(value, weight)), d, sums);
       }
-      weight = hn::Add(weight, step);
       row_0 = row_1;
       row_1 = row_2;
       row_2 = row_3;
@@ -177,13 +176,13 @@ void AddTerm(const PlaneWarp& warp, const ReferencePart<Pixel>& reference, const
              int x, int y, const PixelRect& inside, int block_bits, CellScratch<Pixel>* scratch) {
   SetMotion(warp, term.depth, x, y, block_bits, &scratch->motion);
   const int side = 1 << block_bits;
-  const int step = scratch->motion.is_uniform ? side : kSquare;
+  const int step = scratch->motion.square;
   for (int piece_y = 0; piece_y < side; piece_y += step)
     for (int piece_x = 0; piece_x < side; piece_x += step) {
       const PixelRect needed =
           Intersection({x + piece_x, y + piece_y, x + piece_x + step, y + piece_y + step}, inside);
       if (needed.empty()) continue;
-      const WarpedPosition& moved = scratch->motion.squares[piece_y / kSquare][piece_x / kSquare];
+      const WarpedPosition& moved = scratch->motion.At(piece_x, piece_y);
       const Piece piece = {needed.x_begin - x, needed.y_begin - y, needed.width(), needed.height()};
       const Patch<Pixel> patch =
           PatchAt(reference, needed.x_begin + (moved.x >> kPhaseBits) - kTapsBefore,
@@ -228,6 +227,7 @@ void PredictOf(const PredictionPlan& plan, std::span<const ReferencePart<Pixel>>
     scratch.right[i] = static_cast<Lane>(WindowOfNext(i / channels, bits));
     scratch.left[i] = static_cast<Lane>(kWindow - scratch.right[i]);
   }
+  for (int i = 0; i < side; ++i) scratch.window[i] = static_cast<Lane>(WindowOfNext(i, bits));
   const size_t cell_values = static_cast<size_t>(side) * side * channels;
   for (int cell_y = (rect.y_begin + side / 2) >> bits; cell_y * side - side / 2 < rect.y_end;
        ++cell_y)
@@ -239,8 +239,10 @@ void PredictOf(const PredictionPlan& plan, std::span<const ReferencePart<Pixel>>
       std::fill_n(scratch.sums.data(), cell_values, Lane{0});
       for (int i = 0; i < cell.count; ++i) {
         const CellTerm& term = cell.terms[i];
-        AddTerm(plan.warps[term.reference], references[term.reference], term, x, y, inside, bits,
-                &scratch);
+        const PixelRect reach = Intersection(Moved(ReachOf(term, side), x, y), inside);
+        if (!reach.empty())
+          AddTerm(plan.warps[term.reference], references[term.reference], term, x, y, reach, bits,
+                  &scratch);
       }
       StoreCell(x, y, inside, bits, rect, &scratch, predicted);
     }

@@ -133,15 +133,33 @@ TEST(Predict, PixelsOf16BitsAreThoseOfTheReferenceImplementation) {
   CompareWithReference<uint16_t>(2);
 }
 
+// A warp that moves all pixels alike has the motion of one whose numbers hardly differ.
+TEST(Predict, ShiftsMoveAsOtherWarpsDo) {
+  std::mt19937 random(6);
+  for (int i = 0; i < 2000; ++i) {
+    const double most = std::exp2(static_cast<double>(random() % 14));
+    PlaneWarp shift = Shift(most * std::uniform_real_distribution<double>(-1, 1)(random), 0.3);
+    shift.step[1] = 1 << (random() % 30);
+    PlaneWarp other = shift;
+    other.far[2][0] = 1;  // moves by less than the smallest unit within the cell
+    CellMotion motion, expected;
+    SetMotion(shift, 9, -8, 8, 4, &motion);
+    SetMotion(other, 9, -8, 8, 4, &expected);
+    ASSERT_EQ(motion.square, 16);
+    ASSERT_NEAR(motion.At(0, 0).x, expected.At(0, 0).x, 1);
+    ASSERT_NEAR(motion.At(0, 0).y, expected.At(0, 0).y, 1);
+  }
+}
+
 TEST(Predict, TapsInterpolate) {
   for (int phase = 0; phase < kPhases; ++phase) {
     const Taps& taps = kTapsOfPhase[phase];
     EXPECT_EQ(taps[0] + taps[1] + taps[2] + taps[3], 1 << kTapBits);
-    // Positions on a ramp are found to 1/40 of a step.
-    EXPECT_NEAR((-taps[0] + taps[2] + 2 * taps[3]) / 128.0, phase / 64.0, 1.0 / 40);
+    // The values of a ramp are found to 1/24 of a step.
+    EXPECT_NEAR((-taps[0] + taps[2] + 2 * taps[3]) / 128.0, phase / 64.0, 1.0 / 24);
   }
   EXPECT_EQ(kTapsOfPhase[0], (Taps{0, 128, 0, 0}));
-  EXPECT_EQ(kTapsOfPhase[32], (Taps{-8, 72, 72, -8}));
+  EXPECT_EQ(kTapsOfPhase[32], (Taps{-10, 74, 74, -10}));
 }
 
 // A whole number of pixels: all values are copied exactly, whatever the blocks are.
@@ -178,7 +196,7 @@ TEST(Predict, EvenAreasStayEven) {
   }
 }
 
-// Between the centres of two blocks of different brightness, the brightness changes evenly.
+// Around the border of two blocks of different brightness, the brightness changes evenly.
 TEST(Predict, BlocksOverlap) {
   const Image<uint8_t> dark(64, 64, 1, 0), bright(64, 64, 1, 240);
   PredictionPlan plan{{IdentityWarp(), IdentityWarp()}, MakeBlockField(64, 64, 4, 1)};
@@ -188,7 +206,7 @@ TEST(Predict, BlocksOverlap) {
   Image<uint8_t> found(64, 64);
   Predict<uint8_t>(plan, references, {0, 0, 64, 64}, found.view());
   for (int x = 0; x < 64; ++x) {
-    const double share = std::clamp((x + 0.5 - 24) / 16, 0.0, 1.0);
+    const double share = std::clamp((x + 0.5 - 28) / 8, 0.0, 1.0);
     EXPECT_NEAR(found.at(x, 33), 240 * share, 1) << x;
   }
 }

@@ -2,40 +2,77 @@
 #include "lf/pixels/prediction/prediction_cell.h"
 
 #include <algorithm>
-#include <bit>
+#include <cstdlib>
 
 #include "lf/core/check.h"
 
 namespace lf {
+namespace {
+
+// Returns true if all pixels have the same displacement. Then positions need not be computed for
+// each corner of a cell: they differ by whole pixels.
+bool IsShift(const PlaneWarp& warp) {
+  constexpr int64_t kOne = int64_t{1} << kWarpBits;
+  const auto& [across, down, scale] = warp.far;
+  return across[0] == kOne && across[1] == 0 && down[0] == 0 && down[1] == kOne && scale[0] == 0 &&
+         scale[1] == 0 && scale[2] == kOne && warp.step[2] == 0;
+}
+
+}  // namespace
 
 CellTerms TermsOfCell(const BlockField& blocks, int cell_x, int cell_y) {
   CellTerms found;
-  for (int corner = 0; corner < 4; ++corner) {
-    const int column = std::clamp(cell_x - 1 + corner % 2, 0, blocks.columns - 1);
-    const int row = std::clamp(cell_y - 1 + corner / 2, 0, blocks.rows - 1);
-    const size_t block = static_cast<size_t>(row) * blocks.columns + column;
-    const int depth = blocks.depths[block];
-    const unsigned mask = blocks.masks[block];
-    const int count = std::popcount(mask);
-    int rank = 0;
-    for (int reference = 0; reference < kMostReferences; ++reference) {
-      if ((mask >> reference & 1) == 0) continue;
-      const auto end = found.terms.begin() + found.count;
-      auto term = std::find_if(found.terms.begin(), end, [&](const CellTerm& other) {
-        return other.reference == reference && other.depth == depth;
-      });
-      if (term == end) {
-        *term = {reference, depth, {}};
-        ++found.count;
+  const auto column = [&](int cell) { return std::clamp(cell, 0, blocks.columns - 1); };
+  const auto row = [&](int cell) {
+    return static_cast<size_t>(std::clamp(cell, 0, blocks.rows - 1)) * blocks.columns;
+  };
+  const int left = column(cell_x - 1), right = column(cell_x);
+  const size_t upper_row = row(cell_y - 1), lower_row = row(cell_y);
+  const std::array<size_t, 4> corners = {upper_row + left, upper_row + right, lower_row + left,
+                                         lower_row + right};
+  std::array<bool, 4> is_done{};
+  for (int first = 0; first < 4; ++first) {
+    if (is_done[first]) continue;
+    // The corners with the same depth have the same terms.
+    const uint8_t depth = blocks.depths[corners[first]];
+    const int begin = found.count;
+    for (int corner = first; corner < 4; ++corner) {
+      if (blocks.depths[corners[corner]] != depth) continue;
+      is_done[corner] = true;
+      const Shares& shares = kSharesOfMask[blocks.masks[corners[corner]]];
+      for (int reference = 0; reference < kMostReferences; ++reference) {
+        if (shares[reference] == 0) continue;
+        int term = begin;
+        while (term < found.count && found.terms[term].reference != reference) ++term;
+        if (term == found.count) found.terms[found.count++] = {reference, depth, {}};
+        found.terms[term].shares[corner] = shares[reference];
       }
-      term->shares[corner] = ShareOf(count, rank++);
     }
   }
   return found;
 }
 
+PixelRect ReachOf(const CellTerm& term, int side) {
+  const auto [upper_left, upper_right, lower_left, lower_right] = term.shares;
+  const int quarter = side / 4;
+  return {upper_left + lower_left > 0 ? 0 : quarter, upper_left + upper_right > 0 ? 0 : quarter,
+          upper_right + lower_right > 0 ? side : side - quarter,
+          lower_left + lower_right > 0 ? side : side - quarter};
+}
+
 void SetMotion(const PlaneWarp& warp, int depth, int x, int y, int block_bits, CellMotion* motion) {
   const int side = 1 << block_bits;
+  if (IsShift(warp)) {
+    const WarpedPosition moved = Warped(warp, depth, 0, 0);
+    // Farther positions would be limited at some pixels only.
+    constexpr int32_t kMostMove = 1 << (14 + kPositionBits);
+    if (std::max(std::abs(moved.x), std::abs(moved.y)) <= kMostMove) {
+      constexpr int kBits = kPositionBits - kPhaseBits, kHalf = 1 << (kBits - 1);
+      motion->square = side;
+      motion->squares[0][0] = {(moved.x + kHalf) >> kBits, (moved.y + kHalf) >> kBits};
+      return;
+    }
+  }
   const auto displacement = [&](int at_x, int at_y) -> WarpedPosition {
     const WarpedPosition position = Warped(warp, depth, at_x, at_y);
     return {position.x - at_x * (1 << kPositionBits), position.y - at_y * (1 << kPositionBits)};
@@ -43,16 +80,23 @@ void SetMotion(const PlaneWarp& warp, int depth, int x, int y, int block_bits, C
   const WarpedPosition upper_left = displacement(x, y), upper_right = displacement(x + side, y);
   const WarpedPosition lower_left = displacement(x, y + side);
   const WarpedPosition lower_right = displacement(x + side, y + side);
-  motion->is_uniform =
-      upper_left == upper_right && upper_left == lower_left && upper_left == lower_right;
-  const int squares = motion->is_uniform ? 1 : side / kSquare;
-  // The centre of a square is 2 (4 i + 3 / 2) = 8 i + 3 half pixels from the first pixel.
+  const auto spread = [](int32_t a, int32_t b, int32_t c, int32_t d) {
+    const auto [least, greatest] = std::minmax({a, b, c, d});
+    return int64_t{greatest} - least;
+  };
+  const int64_t change = std::max(spread(upper_left.x, upper_right.x, lower_left.x, lower_right.x),
+                                  spread(upper_left.y, upper_right.y, lower_left.y, lower_right.y));
+  constexpr int64_t kMostChange = int64_t{1} << (kPositionBits - 3);  // within a square
+  motion->square = side;
+  while (motion->square > kLeastSquare && change * motion->square > kMostChange * side)
+    motion->square /= 2;
+  // The centre of a square is 2 q i + q - 1 half pixels from the first pixel of the cell.
   const int shift = 2 * (block_bits + 1) + kPositionBits - kPhaseBits;
   const int64_t whole = 2 * side, half = int64_t{1} << (shift - 1);
-  for (int row = 0; row < squares; ++row)
-    for (int column = 0; column < squares; ++column) {
-      const int64_t across = 2 * kSquare * column + kSquare - 1,
-                    down = 2 * kSquare * row + kSquare - 1;
+  for (int row = 0; row < side / motion->square; ++row)
+    for (int column = 0; column < side / motion->square; ++column) {
+      const int64_t across = motion->square * (2 * column + 1) - 1;
+      const int64_t down = motion->square * (2 * row + 1) - 1;
       const auto between = [&](int64_t a, int64_t b, int64_t c, int64_t d) {
         const int64_t upper = a * (whole - across) + b * across;
         const int64_t lower = c * (whole - across) + d * across;
@@ -62,6 +106,10 @@ void SetMotion(const PlaneWarp& warp, int depth, int x, int y, int block_bits, C
           between(upper_left.x, upper_right.x, lower_left.x, lower_right.x),
           between(upper_left.y, upper_right.y, lower_left.y, lower_right.y)};
     }
+}
+
+PixelRect Moved(const PixelRect& rect, int x, int y) {
+  return {rect.x_begin + x, rect.y_begin + y, rect.x_end + x, rect.y_end + y};
 }
 
 BlockField MakeBlockField(int width, int height, int block_bits, uint8_t mask) {
@@ -90,14 +138,15 @@ std::vector<PixelRect> NeededOfReferences(const PredictionPlan& plan,
       const CellTerms cell = TermsOfCell(plan.blocks, cell_x, cell_y);
       for (int i = 0; i < cell.count; ++i) {
         const CellTerm& term = cell.terms[i];
+        const PixelRect reach = Intersection(Moved(ReachOf(term, side), x, y), rect);
         SetMotion(plan.warps[term.reference], term.depth, x, y, bits, &motion);
-        const int step = motion.is_uniform ? side : kSquare;
+        const int step = motion.square;
         for (int square_y = 0; square_y < side; square_y += step)
           for (int square_x = 0; square_x < side; square_x += step) {
             const PixelRect inside = Intersection(
-                {x + square_x, y + square_y, x + square_x + step, y + square_y + step}, rect);
+                {x + square_x, y + square_y, x + square_x + step, y + square_y + step}, reach);
             if (inside.empty()) continue;
-            const WarpedPosition& moved = motion.squares[square_y / kSquare][square_x / kSquare];
+            const WarpedPosition& moved = motion.At(square_x, square_y);
             // Positions beyond the image are those of its nearest pixels.
             const auto along = [](int begin, int end, int32_t displacement, int size) {
               const int first = begin + (displacement >> kPhaseBits) - kTapsBefore;
