@@ -11,19 +11,9 @@ namespace lf {
 namespace {
 
 constexpr std::string_view kMagic = "LFIM";
-constexpr uint64_t kVersion = 1;
-
-// AppendSigned() and TakeSigned() write and read a signed number, whose sign is stored in the
-// lowest bit.
-void AppendSigned(int64_t number, std::string* code) {
-  AppendNumber((static_cast<uint64_t>(number) << 1) ^ static_cast<uint64_t>(number >> 63), code);
-}
-bool TakeSigned(std::string_view* code, int64_t* number) {
-  uint64_t folded = 0;
-  if (!TakeNumber(code, UINT64_MAX, &folded)) return false;
-  *number = static_cast<int64_t>((folded >> 1) ^ (0 - (folded & 1)));
-  return true;
-}
+constexpr uint64_t kVersion = 2;
+// Images that are not predicted are written in this version, which knows no prediction.
+constexpr uint64_t kVersionAlone = 1;
 
 Error Damaged(const std::string& what) {
   return InputError(
@@ -69,7 +59,7 @@ int CodeHead::components() const {
 void AppendHead(const CodeHead& head, std::string* code) {
   *code += kMagic;
   const CodeInfo& info = head.info;
-  AppendNumber(kVersion, code);
+  AppendNumber(head.is_predicted() ? kVersion : kVersionAlone, code);
   AppendNumber(static_cast<uint64_t>(info.profile), code);
   AppendNumber(static_cast<uint64_t>(info.layout), code);
   AppendNumber(static_cast<uint64_t>(info.bits), code);
@@ -86,6 +76,10 @@ void AppendHead(const CodeHead& head, std::string* code) {
   AppendNumber(static_cast<uint64_t>(head.coefficient_bytes), code);
   AppendNumber(static_cast<uint64_t>(head.fraction_bits), code);
   for (const int32_t step : head.steps) AppendNumber(static_cast<uint64_t>(step), code);
+  if (!head.is_predicted()) return;
+  AppendNumber(static_cast<uint64_t>(info.reference_count), code);
+  AppendNumber(head.prediction.size(), code);
+  *code += head.prediction;
 }
 
 Result<CodeHead> TakeHead(std::string_view* code) {
@@ -95,7 +89,7 @@ Result<CodeHead> TakeHead(std::string_view* code) {
         "is no encoded LF image: it does not begin with LFIM; copy or make the packed store again");
   uint64_t version = 0;
   LF_RETURN_IF_ERROR(Take(code, "version", 0, UINT64_MAX, &version));
-  if (version == 0) return Damaged(fmt::format("its version is 0, expected {}", kVersion));
+  if (version == 0) return Damaged(fmt::format("its version is 0, expected 1 to {}", kVersion));
   if (version > kVersion)
     return InputError(
         fmt::format("is an encoded LF image of version {}, which a newer lfrendertools has "
@@ -103,7 +97,8 @@ Result<CodeHead> TakeHead(std::string_view* code) {
                     version, kVersion));
   CodeHead head;
   CodeInfo& info = head.info;
-  LF_RETURN_IF_ERROR(Take(code, "profile", 0, 2, &info.profile));
+  const uint64_t least_profile = version == kVersionAlone ? 0 : 1;  // thesis: never predicted
+  LF_RETURN_IF_ERROR(Take(code, "profile", least_profile, 2, &info.profile));
   LF_RETURN_IF_ERROR(Take(code, "layout", 0, 2, &info.layout));
   LF_RETURN_IF_ERROR(Take(code, "depth in bits", 8, 16, &info.bits));
   if (info.bits % 8 != 0)
@@ -138,6 +133,13 @@ Result<CodeHead> TakeHead(std::string_view* code) {
   const uint64_t largest_step = head.coefficient_bytes == 2 ? INT16_MAX : 1 << 24;
   for (int32_t& step : head.steps)
     LF_RETURN_IF_ERROR(Take(code, "step of a quantiser", 1, largest_step, &step));
+  if (version == kVersionAlone) return head;
+  LF_RETURN_IF_ERROR(
+      Take(code, "number of reference images", 1, kMostReferenceCount, &info.reference_count));
+  uint64_t bytes = 0;
+  LF_RETURN_IF_ERROR(Take(code, "number of bytes of its prediction", 0, UINT32_MAX, &bytes));
+  if (!TakeBytes(code, bytes, &head.prediction))
+    return Damaged("it is shorter than its prediction");
   return head;
 }
 

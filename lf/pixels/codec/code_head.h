@@ -20,6 +20,7 @@ inline constexpr int kMostLevels = 5;
 // decoder reads tiles of any size from 2^kLeastTileBits to 2^kMostTileBits.
 inline constexpr int kTileBits = 10;
 inline constexpr int kLeastTileBits = 6, kMostTileBits = 12;
+inline constexpr uint64_t kMostReferenceCount = 4;
 
 struct CodeHead {
   CodeInfo info;
@@ -34,6 +35,11 @@ struct CodeHead {
   // each level from the coarsest to the finest: the first is for the two subbands that are high in
   // one direction, the second for the subband that is high in both.
   std::vector<int32_t> steps;
+
+  // Bytes that describe how the image is predicted from others (prediction_code.h), in the encoded
+  // image that the head was read from; empty if it is not.
+  std::string_view prediction;
+  bool is_predicted() const { return info.reference_count > 0; }
 
   // The profile kThesis uses these fields.
   int quantizer = 256;  // CodecSettings::quantizer

@@ -73,6 +73,17 @@ bool TakeNumber(std::string_view* code, uint64_t limit, uint64_t* number) {
   return false;
 }
 
+void AppendSigned(int64_t number, std::string* code) {
+  AppendNumber((static_cast<uint64_t>(number) << 1) ^ static_cast<uint64_t>(number >> 63), code);
+}
+
+bool TakeSigned(std::string_view* code, int64_t* number) {
+  uint64_t folded = 0;
+  if (!TakeNumber(code, UINT64_MAX, &folded)) return false;
+  *number = static_cast<int64_t>((folded >> 1) ^ (0 - (folded & 1)));
+  return true;
+}
+
 bool TakeBytes(std::string_view* code, size_t count, std::string_view* bytes) {
   if (code->size() < count) return false;
   *bytes = code->substr(0, count);

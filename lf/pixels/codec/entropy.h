@@ -28,6 +28,10 @@ void AppendNumber(uint64_t number, std::string* code);
 // false if `code` ends within the number, the number has more than ten bytes, or it exceeds
 // `limit`.
 [[nodiscard]] bool TakeNumber(std::string_view* code, uint64_t limit, uint64_t* number);
+// Appends a whole number whose sign is stored in the lowest bit.
+void AppendSigned(int64_t number, std::string* code);
+// Reads a number that AppendSigned() wrote, as TakeNumber() does.
+[[nodiscard]] bool TakeSigned(std::string_view* code, int64_t* number);
 // Removes the first `count` bytes from `code` and sets `bytes` to them. Returns false if `code` has
 // fewer bytes.
 [[nodiscard]] bool TakeBytes(std::string_view* code, size_t count, std::string_view* bytes);

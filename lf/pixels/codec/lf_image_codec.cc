@@ -14,6 +14,7 @@
 #include "lf/pixels/codec/code_head.h"
 #include "lf/pixels/codec/decode_by.h"
 #include "lf/pixels/codec/entropy.h"
+#include "lf/pixels/codec/residual_code.h"
 #include "lf/pixels/codec/thesis_tile.h"
 #include "lf/pixels/codec/wavelet_tile.h"
 
@@ -55,9 +56,11 @@ Result<std::string> Assembled(const CodeHead& head, const std::vector<Tile>& til
   return code + sections;
 }
 
+//   prediction  empty if the head says that the image is not predicted
 template <class Pixel>
-Result<std::string> Encode(ImageView<const Pixel> pixels, const CodecSettings& settings,
-                           CodeHead head, const IsInterrupted& is_interrupted) {
+Result<std::string> Encode(ImageView<const Pixel> pixels, ImageView<const Pixel> prediction,
+                           const CodecSettings& settings, CodeHead head,
+                           const IsInterrupted& is_interrupted) {
   if (settings.profile == CodecProfile::kThesis) {
     std::vector<HaarTile> tiles;
     for (size_t i = 0; i < head.tile_count(); ++i) {
@@ -78,7 +81,10 @@ Result<std::string> Encode(ImageView<const Pixel> pixels, const CodecSettings& s
   int32_t largest = 0;
   for (size_t i = 0; i < head.tile_count(); ++i) {
     LF_RETURN_IF_ERROR(CheckInterrupted(is_interrupted));
-    tiles.push_back(QuantizeTile(Transform::kSimd, head, Part(pixels, head.TileRect(i))));
+    const PixelRect rect = head.TileRect(i);
+    tiles.push_back(
+        QuantizeTile(Transform::kSimd, head, Part(pixels, rect),
+                     prediction.empty() ? ImageView<const Pixel>() : Part(prediction, rect)));
     largest = std::max(largest, tiles.back().largest);
   }
   head.coefficient_bytes = head.info.bits == 8 && FitsInTwoBytes(largest) ? 2 : 4;
@@ -138,14 +144,8 @@ Result<Contents> TakeContents(std::string_view code) {
   return contents;
 }
 
-// Returns the smallest rectangle of whole tiles that contains the pixels `wanted`.
-PixelRect TilesAround(const CodeHead& head, const PixelRect& wanted) {
-  const int size = head.tile_size();
-  return {wanted.x_begin / size * size, wanted.y_begin / size * size,
-          std::min((wanted.x_end - 1) / size * size + size, head.info.width),
-          std::min((wanted.y_end - 1) / size * size + size, head.info.height)};
-}
-
+// Decodes the tiles of `rect`. Before, `pixels` must hold their prediction if the head says that
+// the image is predicted.
 template <class Pixel>
 Result<void> Decode(Transform transform, const Contents& contents, const PixelRect& rect,
                     CodecPixels* pixels) {
@@ -247,14 +247,15 @@ Result<void> CheckSettings(const CodecSettings& settings) {
   return {};
 }
 
-std::string EncodeImage(const CodecPixels& pixels, PixelLayout layout,
-                        const CodecSettings& settings) {
-  return *EncodeImage(pixels, layout, settings, {});
-}
+namespace {
 
-Result<std::string> EncodeImage(const CodecPixels& pixels, PixelLayout layout,
-                                const CodecSettings& settings,
-                                const std::function<bool()>& is_interrupted) {
+// Encodes an image, or its difference to a prediction: bytes that describe the prediction follow
+// the head.
+//   prediction  null if reference_count is 0
+Result<std::string> EncodeAny(const CodecPixels& pixels, const CodecPixels* prediction,
+                              PixelLayout layout, const CodecSettings& settings,
+                              int reference_count, std::string_view prediction_code,
+                              const IsInterrupted& is_interrupted) {
   LF_CHECK(CheckSettings(settings).has_value());
   return std::visit(
       [&]<class Pixel>(const Image<Pixel>& image) {
@@ -262,11 +263,41 @@ Result<std::string> EncodeImage(const CodecPixels& pixels, PixelLayout layout,
                  image.height() > 0 &&
                  static_cast<long long>(image.width()) * image.height() <= kMostPixels);
         CodeHead head;
-        head.info = {image.width(),     image.height(),   layout,
-                     8 * sizeof(Pixel), settings.profile, settings.levels};
-        return Encode(image.view(), settings, std::move(head), is_interrupted);
+        head.info = {image.width(),    image.height(),  layout,         8 * sizeof(Pixel),
+                     settings.profile, settings.levels, reference_count};
+        head.prediction = prediction_code;
+        ImageView<const Pixel> predicted;
+        if (prediction != nullptr) predicted = std::get<Image<Pixel>>(*prediction).view();
+        return Encode(image.view(), predicted, settings, std::move(head), is_interrupted);
       },
       pixels);
+}
+
+}  // namespace
+
+std::string EncodeImage(const CodecPixels& pixels, PixelLayout layout,
+                        const CodecSettings& settings) {
+  return *EncodeAny(pixels, nullptr, layout, settings, 0, {}, {});
+}
+
+Result<std::string> EncodeImage(const CodecPixels& pixels, PixelLayout layout,
+                                const CodecSettings& settings,
+                                const std::function<bool()>& is_interrupted) {
+  return EncodeAny(pixels, nullptr, layout, settings, 0, {}, is_interrupted);
+}
+
+std::string EncodeResidual(const CodecPixels& pixels, const CodecPixels& prediction,
+                           PixelLayout layout, const CodecSettings& settings, int reference_count,
+                           std::string_view prediction_code) {
+  LF_CHECK(reference_count > 0 && settings.profile != CodecProfile::kThesis);
+  return *EncodeAny(pixels, &prediction, layout, settings, reference_count, prediction_code, {});
+}
+
+PixelRect TilesAround(const CodeHead& head, const PixelRect& wanted) {
+  const int size = head.tile_size();
+  return {wanted.x_begin / size * size, wanted.y_begin / size * size,
+          std::min((wanted.x_end - 1) / size * size + size, head.info.width),
+          std::min((wanted.y_end - 1) / size * size + size, head.info.height)};
 }
 
 Result<CodeInfo> ReadCodeInfo(std::string_view code) {
@@ -280,6 +311,10 @@ Result<void> DecodeImageBy(Transform transform, std::string_view code, const Pix
                            DecodedPart* part) {
   LF_ASSIGN_OR_RETURN(const Contents contents, TakeContents(code));
   const CodeInfo& info = contents.head.info;
+  if (info.reference_count > 0)
+    return InputError(fmt::format(
+        "is an encoded LF image that is predicted from {} others and needs their pixels",
+        info.reference_count));
   const PixelRect inside = Intersection(wanted, {0, 0, info.width, info.height});
   LF_CHECK(!inside.empty());
   part->rect = TilesAround(contents.head, inside);
@@ -287,8 +322,16 @@ Result<void> DecodeImageBy(Transform transform, std::string_view code, const Pix
                         : Decode<uint16_t>(transform, contents, part->rect, &part->pixels);
 }
 
+Result<void> DecodeResidual(Transform transform, std::string_view code, const PixelRect& rect,
+                            CodecPixels* pixels) {
+  LF_ASSIGN_OR_RETURN(const Contents contents, TakeContents(code));
+  LF_CHECK(TilesAround(contents.head, rect) == rect);
+  return contents.head.info.bits == 8 ? Decode<uint8_t>(transform, contents, rect, pixels)
+                                      : Decode<uint16_t>(transform, contents, rect, pixels);
+}
+
 int LargestReduction(const CodeInfo& info) {
-  if (info.profile == CodecProfile::kThesis) return 1;
+  if (info.profile == CodecProfile::kThesis || info.reference_count > 0) return 1;
   int n = info.layout == PixelLayout::kMosaic ? info.levels + 1 : info.levels;
   while (n > 0 && std::min(info.width, info.height) < 1 << n) --n;
   return 1 << n;

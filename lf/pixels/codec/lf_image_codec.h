@@ -81,6 +81,9 @@ struct CodeInfo {
   int bits = 8;  // bits of a stored value, 8 or 16
   CodecProfile profile = CodecProfile::kDefault;
   int levels = 0;
+  // Number of other images from which it is predicted. It can only be decoded with their pixels
+  // (predicted_image.h) unless this is 0.
+  int reference_count = 0;
 };
 
 // Reads only the head. Returns kInput, with a message that does not name the file, if `code` is no
@@ -97,7 +100,8 @@ struct DecodedPart {
 // memory of part->pixels if it has the right type. If another program wrote `code`, the result may
 // be any picture or an error, but decoding never needs more memory than a few times the pixels of
 // these tiles. Returns kInput, with a message that does not name the file, if ReadCodeInfo() does,
-// or if the table of contents or one of these tiles is damaged.
+// if the image is predicted from others, or if the table of contents or one of these tiles is
+// damaged.
 Result<void> DecodeImage(std::string_view code, const PixelRect& wanted, DecodedPart* part);
 // Decodes the whole image.
 Result<void> DecodeImage(std::string_view code, DecodedPart* part);
@@ -106,7 +110,7 @@ Result<void> DecodeImage(std::string_view code, DecodedPart* part);
 // be cut off at ResolutionEnds()[ResolutionFor()] bytes.
 
 // Returns the largest reduction that DecodeReduced() can make, a power of 2: 1 if it can make none,
-// as for kThesis.
+// as for kThesis and for predicted images.
 int LargestReduction(const CodeInfo& info);
 // Returns the number of the last resolution (doc/formats/lf_image.md) that DecodeReduced() reads.
 //   reduction  from 2 to LargestReduction(), a power of 2

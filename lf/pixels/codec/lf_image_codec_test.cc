@@ -500,7 +500,7 @@ TEST(LfImageCodec, AWrongHeadIsNamedWithItsValue) {
               "is a damaged encoded LF image: " + part + "; copy or make the packed store again");
   };
   using namespace std::string_view_literals;
-  expect("\0"sv, "its version is 0, expected 1");
+  expect("\0"sv, "its version is 0, expected 1 to 2");
   expect("\x01"sv, "its profile cannot be read");
   expect("\x01\x07"sv, "its profile is 7, expected 0 to 2");
   expect("\x01\x02\x00\x0c"sv, "its depth in bits is 12, expected 8 or 16");

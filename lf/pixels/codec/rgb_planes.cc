@@ -26,9 +26,21 @@ void MergeRow(const std::array<const T*, kRgbComponents>& components, const Pixe
   const int lanes = static_cast<int>(hn::Lanes(d));
   const auto half = hn::Set(d, static_cast<T>((1 << scale.fraction_bits) >> 1));
   const auto offset = hn::Set(d, static_cast<T>(scale.offset));
-  const auto pixel = [&](auto value) {
+  const auto pixel = [&](auto value, auto added) {
     const auto whole = hn::ShiftRightSame(hn::Add(value, half), scale.fraction_bits);
-    return hn::DemoteTo(d_pixel, hn::Add(whole, offset));
+    return hn::DemoteTo(d_pixel, hn::Add(whole, added));
+  };
+  const auto store = [&](auto red, auto green, auto blue, Pixel* to) {
+    if (!scale.adds) {
+      hn::StoreInterleaved3(pixel(red, offset), pixel(green, offset), pixel(blue, offset), d_pixel,
+                            to);
+      return;
+    }
+    auto red_before = hn::Zero(d_pixel), green_before = red_before, blue_before = red_before;
+    hn::LoadInterleaved3(d_pixel, to, red_before, green_before, blue_before);
+    hn::StoreInterleaved3(pixel(red, hn::PromoteTo(d, red_before)),
+                          pixel(green, hn::PromoteTo(d, green_before)),
+                          pixel(blue, hn::PromoteTo(d, blue_before)), d_pixel, to);
   };
   for (int x = 0; x < width; x += lanes) {
     const auto y = hn::LoadU(d, components[0] + x), cg = hn::LoadU(d, components[1] + x);
@@ -38,11 +50,12 @@ void MergeRow(const std::array<const T*, kRgbComponents>& components, const Pixe
     const auto blue = hn::Sub(t, hn::ShiftRight<1>(co));
     const auto red = hn::Add(blue, co);
     if (x + lanes <= width) {
-      hn::StoreInterleaved3(pixel(red), pixel(green), pixel(blue), d_pixel, out + 3 * x);
+      store(red, green, blue, out + 3 * x);
       continue;
     }
     HWY_ALIGN Pixel last[3 * kSlack];
-    hn::StoreInterleaved3(pixel(red), pixel(green), pixel(blue), d_pixel, last);
+    std::copy_n(out + 3 * x, 3 * (width - x), last);
+    store(red, green, blue, last);
     std::copy_n(last, 3 * (width - x), out + 3 * x);
   }
 }
@@ -101,18 +114,19 @@ template <class T, class Pixel>
 void MergeRowReference(const std::array<const T*, kRgbComponents>& components,
                        const PixelScale& scale, int width, Pixel* out) {
   const T half = static_cast<T>((1 << scale.fraction_bits) >> 1);
-  const auto pixel = [&](T value) {
+  const auto set = [&](T value, Pixel* to) {
     const T whole = static_cast<T>(Sum(value, half) >> scale.fraction_bits);
-    return static_cast<Pixel>(std::clamp<int64_t>(Sum(whole, static_cast<T>(scale.offset)), 0,
-                                                  std::numeric_limits<Pixel>::max()));
+    const T offset = static_cast<T>(scale.adds ? *to : scale.offset);
+    *to = static_cast<Pixel>(
+        std::clamp<int64_t>(Sum(whole, offset), 0, std::numeric_limits<Pixel>::max()));
   };
   for (int x = 0; x < width; ++x) {
     const T cg = components[1][x], co = components[2][x];
     const T t = Difference(components[0][x], static_cast<T>(cg >> 1));
     const T blue = Difference(t, static_cast<T>(co >> 1));
-    out[3 * x] = pixel(Sum(blue, co));
-    out[3 * x + 1] = pixel(Sum(cg, t));
-    out[3 * x + 2] = pixel(blue);
+    set(Sum(blue, co), out + 3 * x);
+    set(Sum(cg, t), out + 3 * x + 1);
+    set(blue, out + 3 * x + 2);
   }
 }
 

@@ -66,6 +66,9 @@ struct CodedBands {
 struct PixelScale {
   int fraction_bits = 0;
   int offset = 0;
+  // True if coefficients are differences to a prediction. Before, the pixels then hold the
+  // prediction, which takes the place of `offset`.
+  bool adds = false;
 };
 
 enum class Transform { kReference, kSimd };

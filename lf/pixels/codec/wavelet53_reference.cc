@@ -114,8 +114,8 @@ void SynthesizePixelsReference(const CodedBands<T>& bands, const PixelScale& sca
   for (int y = 0; y < bands.height; ++y)
     for (int x = 0; x < bands.width; ++x) {
       const T value = values[static_cast<size_t>(y) * bands.width + x];
-      const T pixel = Sum(static_cast<T>(Sum(value, half) >> scale.fraction_bits),
-                          static_cast<T>(scale.offset));
+      const T offset = static_cast<T>(scale.adds ? pixels.at(x, y) : scale.offset);
+      const T pixel = Sum(static_cast<T>(Sum(value, half) >> scale.fraction_bits), offset);
       pixels.at(x, y) =
           static_cast<Pixel>(std::clamp<int64_t>(pixel, 0, std::numeric_limits<Pixel>::max()));
     }

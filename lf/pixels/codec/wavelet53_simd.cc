@@ -197,14 +197,24 @@ void SynthesizePixelsOf(const CodedBands<T>& bands, const PixelScale& scale,
   auto* const row = reinterpret_cast<Pixel*>(rows[kRowsOfHalves]);
   const auto half = hn::Set(d, static_cast<T>((1 << scale.fraction_bits) >> 1));
   const auto offset = hn::Set(d, static_cast<T>(scale.offset));
-  const auto pixel = [&](auto value) {
+  const auto pixel = [&](auto value, auto added) {
     const auto whole = hn::ShiftRightSame(hn::Add(value, half), scale.fraction_bits);
-    return hn::DemoteTo(d_pixel, hn::Add(whole, offset));
+    return hn::DemoteTo(d_pixel, hn::Add(whole, added));
   };
   SynthesizeRows(bands, rows, [&](int y, T* low, T* high) {
-    MergeRow(low, high, bands.width, [&](int x, auto even, auto odd) {
-      hn::StoreInterleaved2(pixel(even), pixel(odd), d_pixel, row + 2 * x);
-    });
+    if (scale.adds) {
+      std::memcpy(row, pixels.row(y), sizeof(Pixel) * bands.width);
+      MergeRow(low, high, bands.width, [&](int x, auto even, auto odd) {
+        auto even_before = hn::Zero(d_pixel), odd_before = hn::Zero(d_pixel);
+        hn::LoadInterleaved2(d_pixel, row + 2 * x, even_before, odd_before);
+        hn::StoreInterleaved2(pixel(even, hn::PromoteTo(d, even_before)),
+                              pixel(odd, hn::PromoteTo(d, odd_before)), d_pixel, row + 2 * x);
+      });
+    } else {
+      MergeRow(low, high, bands.width, [&](int x, auto even, auto odd) {
+        hn::StoreInterleaved2(pixel(even, offset), pixel(odd, offset), d_pixel, row + 2 * x);
+      });
+    }
     std::memcpy(pixels.row(y), row, sizeof(Pixel) * bands.width);
   });
 }

@@ -74,8 +74,11 @@ double Norm(const CodeHead& head, int component, int level, bool high_across, bo
 
 // --- Encoding
 
+// Returns the planes of the pixels less their prediction, or less the middle of the range of values
+// if the prediction is empty.
 template <class Pixel>
-std::vector<std::vector<int32_t>> PlanesOf(const CodeHead& head, ImageView<const Pixel> pixels) {
+std::vector<std::vector<int32_t>> PlanesOf(const CodeHead& head, ImageView<const Pixel> pixels,
+                                           ImageView<const Pixel> prediction) {
   const int channels = ChannelsOf(head.info.layout);
   const int32_t middle = 1 << (head.info.bits - 1);
   const size_t count = static_cast<size_t>(pixels.width) * pixels.height;
@@ -84,8 +87,14 @@ std::vector<std::vector<int32_t>> PlanesOf(const CodeHead& head, ImageView<const
     int32_t* out = planes[c].data();
     for (int y = 0; y < pixels.height; ++y) {
       const Pixel* in = pixels.row(y) + c;
-      for (int x = 0; x < pixels.width; ++x, in += channels)
-        *out++ = (int32_t{*in} - middle) << head.fraction_bits;
+      if (prediction.empty()) {
+        for (int x = 0; x < pixels.width; ++x, in += channels)
+          *out++ = (int32_t{*in} - middle) << head.fraction_bits;
+      } else {
+        const Pixel* predicted = prediction.row(y) + c;
+        for (int x = 0; x < pixels.width; ++x, in += channels, predicted += channels)
+          *out++ = (int32_t{*in} - *predicted) * (1 << head.fraction_bits);
+      }
     }
   }
   if (head.info.layout == PixelLayout::kRgb)
@@ -266,7 +275,7 @@ bool DecodeAs(Transform transform, const CodeHead& head, std::span<std::string_v
               ImageView<Pixel> pixels) {
   WaveletScratch<T>& scratch = WaveletScratch<T>::OfThread();
   TileReader<T> reader(transform, head, sections);
-  const PixelScale scale{head.fraction_bits, 1 << (head.info.bits - 1)};
+  const PixelScale scale{head.fraction_bits, 1 << (head.info.bits - 1), head.is_predicted()};
   CodedBands<T> bands;
   if (head.info.layout == PixelLayout::kGrey) {
     if (!reader.Read(0, {pixels.width, pixels.height}, &bands)) return false;
@@ -375,7 +384,7 @@ bool DecodeReducedAs(Transform transform, const CodeHead& head,
     if (!reader.ReadLow(c, size, resolution, &low)) return false;
     CopyLow(low, LowSize(size, head.info.levels - resolution), pixels.width, pixels.height, plane);
   }
-  const PixelScale scale{LowFractionBits(head), 1 << (head.info.bits - 1)};
+  const PixelScale scale{LowFractionBits(head), 1 << (head.info.bits - 1), false};
   if (head.info.layout == PixelLayout::kRgb)
     MergeColours(transform, std::array{planes[0], planes[1], planes[2]}, scale, pixels);
   else if (head.info.layout == PixelLayout::kMosaic)
@@ -408,10 +417,10 @@ void SetSteps(const CodecSettings& settings, CodeHead* head) {
 }
 
 template <class Pixel>
-QuantizedTile QuantizeTile(Transform transform, const CodeHead& head,
-                           ImageView<const Pixel> pixels) {
+QuantizedTile QuantizeTile(Transform transform, const CodeHead& head, ImageView<const Pixel> pixels,
+                           ImageView<const Pixel> prediction) {
   const int levels = head.info.levels;
-  std::vector<std::vector<int32_t>> planes = PlanesOf(head, pixels);
+  std::vector<std::vector<int32_t>> planes = PlanesOf(head, pixels, prediction);
   if (head.info.layout == PixelLayout::kMosaic) {
     BandPlanes bands = Analyzed(transform, planes[0], {pixels.width, pixels.height}, false);
     planes.assign(std::make_move_iterator(bands.begin()), std::make_move_iterator(bands.end()));
@@ -447,8 +456,10 @@ QuantizedTile QuantizeTile(Transform transform, const CodeHead& head,
   }
   return tile;
 }
-template QuantizedTile QuantizeTile(Transform, const CodeHead&, ImageView<const uint8_t>);
-template QuantizedTile QuantizeTile(Transform, const CodeHead&, ImageView<const uint16_t>);
+template QuantizedTile QuantizeTile(Transform, const CodeHead&, ImageView<const uint8_t>,
+                                    ImageView<const uint8_t>);
+template QuantizedTile QuantizeTile(Transform, const CodeHead&, ImageView<const uint16_t>,
+                                    ImageView<const uint16_t>);
 
 // The synthesis adds two values, each at most 2.5 times as large as the largest value of a subband.
 // 2 * 2.5 * 6000 is within the range of int16_t.

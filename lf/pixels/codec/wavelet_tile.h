@@ -28,9 +28,12 @@ struct QuantizedTile {
                                               // quantisation
 };
 
+// Returns the coefficients of a tile.
+//   prediction  of the size of `pixels` if the head says that the image is predicted: coefficients
+//               are those of the pixels less their prediction; otherwise empty
 template <class Pixel>
-QuantizedTile QuantizeTile(Transform transform, const CodeHead& head,
-                           ImageView<const Pixel> pixels);
+QuantizedTile QuantizeTile(Transform transform, const CodeHead& head, ImageView<const Pixel> pixels,
+                           ImageView<const Pixel> prediction);
 
 // Returns true if two bytes can hold all coefficients whose magnitude is at most `largest`, and
 // also the sums of two values that occur during the synthesis.
@@ -39,8 +42,9 @@ bool FitsInTwoBytes(int32_t largest);
 // Returns the encoded coefficients of one resolution of a tile.
 std::string CodeOfSection(const CodeHead& head, const QuantizedTile& tile, int resolution);
 
-// Decodes the pixels of a tile from its sections, which are ordered by resolution. Returns false if
-// a section is damaged.
+// Decodes the pixels of a tile from its sections, which are ordered by resolution. Before, the
+// pixels must hold the prediction if the head says that the image is predicted. Returns false if a
+// section is damaged.
 template <class Pixel>
 [[nodiscard]] bool DecodeWaveletTile(Transform transform, const CodeHead& head,
                                      std::span<std::string_view> sections, ImageView<Pixel> pixels);
