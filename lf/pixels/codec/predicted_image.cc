@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
+#include <cstdlib>
 #include <type_traits>
 #include <utility>
 
@@ -18,9 +20,11 @@
 namespace lf {
 namespace {
 
-// Side of the blocks that the encoder makes, as a binary logarithm; for a mosaic in squares of 2 x
-// 2 pixels. It was chosen by measurement (doc/codec.md).
-constexpr int kBlockBits = 4, kBlockBitsOfMosaic = 3;
+// Returns the binary logarithm of the side of a block, for a mosaic in squares of 2 x 2 pixels.
+int BlockBits(const PredictionSettings& settings, PixelLayout layout) {
+  const int bits = std::countr_zero(static_cast<unsigned>(settings.block_px));
+  return layout == PixelLayout::kMosaic ? std::max(bits - 1, kLeastBlockBits) : bits;
+}
 
 template <class Pixel>
 PixelRect AreaOf(const Image<Pixel>& image) {
@@ -157,7 +161,8 @@ void SetMeans(const Image<uint8_t>& brightness, const Image<uint8_t>& predicted,
 
 template <class Pixel>
 PredictedCode EncodeFrom(const Image<Pixel>& image, PixelLayout layout,
-                         const CodecSettings& settings, std::span<const Reference> references) {
+                         const CodecSettings& settings, std::span<const Reference> references,
+                         const PredictionSettings& prediction_settings) {
   const Picture<Pixel> target(image, layout);
   std::vector<Picture<Pixel>> pictures;
   std::vector<ReferencePart<Pixel>> parts;
@@ -181,7 +186,7 @@ PredictedCode EncodeFrom(const Image<Pixel>& image, PixelLayout layout,
   for (const ReferencePart<Pixel>& part : parts)
     of_references.push_back(BrightnessOf(part.pixels, range));
   SearchSettings search;
-  search.block_bits = layout == PixelLayout::kMosaic ? kBlockBitsOfMosaic : kBlockBits;
+  search.block_bits = BlockBits(prediction_settings, layout);
   search.step =
       settings.profile == CodecProfile::kLossless ? 0 : 1.5 * settings.threshold / range.unit();
   prediction.plan.blocks = SearchBlocks(brightness, of_references, prediction.plan.warps, search);
@@ -200,14 +205,15 @@ PredictedCode EncodeFrom(const Image<Pixel>& image, PixelLayout layout,
 }  // namespace
 
 PredictedCode EncodePredicted(const CodecPixels& pixels, PixelLayout layout,
-                              const CodecSettings& settings,
-                              std::span<const Reference> references) {
+                              const CodecSettings& settings, std::span<const Reference> references,
+                              const PredictionSettings& prediction) {
+  LF_CHECK(prediction.block_px == 8 || prediction.block_px == 16 || prediction.block_px == 32);
   LF_CHECK(!references.empty() && references.size() <= kMostReferences);
   return std::visit(
       [&]<class Pixel>(const Image<Pixel>& image) {
         const ReferenceSize size = PredictedSize(layout, image.width(), image.height());
         LF_CHECK(!image.empty() && std::max(size.width, size.height) <= kMostPredictedSide);
-        return EncodeFrom(image, layout, settings, references);
+        return EncodeFrom(image, layout, settings, references, prediction);
       },
       pixels);
 }

@@ -95,7 +95,8 @@ TEST(PredictedImage, LosslessIsExact) {
     CodecSettings settings = SettingsFor(CodecProfile::kLossless);
     settings.levels = 1 + i % 5;
     const std::string code =
-        EncodePredicted(group.target, group.layout, settings, group.references).code;
+        EncodePredicted(group.target, group.layout, settings, group.references, {8 << (i % 3)})
+            .code;
     DecodedPart part;
     ASSERT_TRUE(DecodePredicted(code, group.parts, {0, 0, 1000, 1000}, &part));
     ASSERT_TRUE(HasPixels(part, group.target)) << i;
@@ -173,6 +174,19 @@ TEST(PredictedImage, PlanesTakeFewBytes) {
           << static_cast<int>(layout) << " " << threshold;
       EXPECT_LT(predicted.mean_residual, predicted.mean_detail / 2);
     }
+}
+
+// Smaller blocks follow the edge of the near plane better.
+TEST(PredictedImage, SmallerBlocksTakeFewerBytes) {
+  const CodecSettings settings = SettingsFor(CodecProfile::kLossless);
+  const DrawnGroup group = MakeDrawnGroup<uint8_t>(2, 320, 240, PixelLayout::kGrey, settings);
+  const auto bytes = [&](int block_px) {
+    return EncodePredicted(group.target, PixelLayout::kGrey, settings, group.references(),
+                           {block_px})
+        .code.size();
+  };
+  EXPECT_LT(bytes(8), bytes(16));
+  EXPECT_LT(bytes(16), bytes(32));
 }
 
 TEST(PredictedImage, DepthsOf16BitsAreFound) {

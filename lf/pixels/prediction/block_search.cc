@@ -56,6 +56,48 @@ void SetMean(std::span<const Image<uint8_t>> images, int width, int height, Imag
   }
 }
 
+// The depths that are compared for a block: bit d stands for depth d.
+using Depths = uint64_t;
+constexpr Depths kEvenDepths = 0x5555555555555555;
+
+// Returns the warp for positions that are `shift` pixels farther to the right and down.
+PlaneWarp Shifted(PlaneWarp warp, int shift) {
+  for (auto& row : warp.far) row[2] -= shift * (row[0] + row[1]);
+  return warp;
+}
+
+// Returns the warp between pictures of half the size: pixel x is the mean of 2 x and 2 x + 1.
+PlaneWarp HalvedWarp(const PlaneWarp& warp) {
+  PlaneWarp halved = warp;
+  for (int row = 0; row < 3; ++row) {
+    const auto [across, down, origin] = warp.far[row];
+    halved.far[row] = {2 * across, 2 * down, origin + (across + down) / 2};
+  }
+  for (int row = 0; row < 2; ++row) {
+    for (int i = 0; i < 3; ++i)
+      halved.far[row][i] = (halved.far[row][i] - halved.far[2][i] / 2) / 2;
+    halved.step[row] = (warp.step[row] - warp.step[2] / 2) / 2;
+  }
+  return halved;
+}
+
+// Returns the picture of half the size, rounded up.
+Image<uint8_t> HalvedImage(const Image<uint8_t>& image) {
+  Image<uint8_t> halved((image.width() + 1) / 2, (image.height() + 1) / 2);
+  for (int y = 0; y < halved.height(); ++y) {
+    const uint8_t* const upper = image.row(2 * y);
+    const uint8_t* const lower = image.row(std::min(2 * y + 1, image.height() - 1));
+    uint8_t* const out = halved.row(y);
+    for (int x = 0; x < image.width() / 2; ++x)
+      out[x] = static_cast<uint8_t>(
+          (upper[2 * x] + upper[2 * x + 1] + lower[2 * x] + lower[2 * x + 1] + 2) >> 2);
+    if (image.width() % 2 == 1)
+      out[halved.width() - 1] =
+          static_cast<uint8_t>((upper[image.width() - 1] + lower[image.width() - 1] + 1) >> 1);
+  }
+  return halved;
+}
+
 // Finds the blocks of an image, one row of blocks after the other.
 class BlockSearch {
  public:
@@ -65,36 +107,61 @@ class BlockSearch {
         modes_(references.size()),
         side_(1 << settings.block_bits),
         blocks_(MakeBlockField(brightness.width(), brightness.height(), settings.block_bits, 0)),
-        cost_of_bit_(std::lround(kCostUnit * std::clamp(2.5 * settings.step, 2.0, 1000.0))),
+        cost_of_bit_(std::lround(kCostUnit * std::clamp(0.8 * settings.step, 1.0, 1000.0))),
         costs_(static_cast<size_t>(blocks_.columns) * kDepthSteps * modes_.count),
         choices_(blocks_.columns) {
     for (size_t r = 0; r < references.size(); ++r) {
-      // All blocks are those at the ends of a field of a single block.
-      plans_.push_back({{warps[r]}, MakeBlockField(1, 1, settings.block_bits, 1)});
+      // With pixels that are half a block farther, each block is a cell (predict.h). All cells have
+      // the depth of the single block of the field.
+      plans_.push_back(
+          {{Shifted(warps[r], side_ / 2)}, MakeBlockField(1, 1, settings.block_bits, 1)});
       parts_.push_back({references[r].view(), 0, 0, references[r].width(), references[r].height()});
       warped_.emplace_back(brightness.width(), side_);
     }
     mean_ = Image<uint8_t>(brightness.width(), side_);
   }
 
-  BlockField Found() && {
+  // Compares the same depths in all blocks.
+  BlockField FoundOf(Depths depths) && {
     for (int row = 0; row < blocks_.rows; ++row) {
-      for (int depth = 0; depth < kDepthSteps; ++depth) Compare(row, depth);
+      std::fill(costs_.begin(), costs_.end(), kNotCompared);
+      for (int depth = 0; depth < kDepthSteps; ++depth)
+        if ((depths >> depth & 1) != 0) Compare(row, 0, blocks_.columns, depth);
+      Choose(row);
+    }
+    return std::move(blocks_);
+  }
+
+  // Compares depths(column, row) in each block.
+  template <class DepthsOf>
+  BlockField Found(const DepthsOf& depths) && {
+    for (int row = 0; row < blocks_.rows; ++row) {
+      std::fill(costs_.begin(), costs_.end(), kNotCompared);
+      for (int column = 0; column < blocks_.columns; ++column) {
+        const Depths of_block = depths(column, row);
+        for (int depth = 0; depth < kDepthSteps; ++depth)
+          if ((of_block >> depth & 1) != 0) Compare(row, column, column + 1, depth);
+      }
       Choose(row);
     }
     return std::move(blocks_);
   }
 
  private:
+  static constexpr int64_t kNotCompared = INT64_MAX / 2;
+
   int ChoiceCount() const { return kDepthSteps * modes_.count; }
 
-  // Sets the costs of a row of blocks at one depth.
-  void Compare(int row, int depth) {
+  // Sets the costs of some blocks of a row, from `begin` to before `end`, at one depth.
+  void Compare(int row, int begin, int end, int depth) {
+    const int x_begin = begin * side_, x_end = std::min(end * side_, brightness_.width());
     const int y_begin = row * side_, y_end = std::min(y_begin + side_, brightness_.height());
-    const PixelRect rect = {0, y_begin, brightness_.width(), y_end};
+    const int shift = side_ / 2;
+    const PixelRect rect = {x_begin + shift, y_begin + shift, x_end + shift, y_end + shift};
     for (size_t r = 0; r < plans_.size(); ++r) {
       plans_[r].blocks.depths[0] = static_cast<uint8_t>(depth);
       ImageView<uint8_t> strip = warped_[r].view();
+      strip.width = rect.width();
       strip.height = rect.height();
       Predict<uint8_t>(plans_[r], std::span(parts_).subspan(r, 1), rect, strip);
     }
@@ -103,11 +170,12 @@ class BlockSearch {
       const Image<uint8_t>& predicted = modes_.count == 1 ? warped_[0]
                                         : mode == 0       ? mean_
                                                           : warped_[mode - 1];
-      for (int column = 0; column < blocks_.columns; ++column) {
-        const int x = column * side_, width = std::min(side_, brightness_.width() - x);
+      for (int column = begin; column < end; ++column) {
+        const int x = column * side_, width = std::min(side_, x_end - x);
         uint32_t sum = 0;
         for (int y = 0; y < rect.height(); ++y)
-          sum += Difference(brightness_.row(y_begin + y) + x, predicted.row(y) + x, width);
+          sum +=
+              Difference(brightness_.row(y_begin + y) + x, predicted.row(y) + x - x_begin, width);
         costs_[static_cast<size_t>(column) * ChoiceCount() + depth * modes_.count + mode] =
             int64_t{kCostUnit} * sum;
       }
@@ -184,7 +252,36 @@ BlockField SearchBlocks(const Image<uint8_t>& brightness,
                         std::span<const PlaneWarp> warps, const SearchSettings& settings) {
   LF_CHECK(!references.empty() && references.size() <= kMostReferences &&
            references.size() == warps.size());
-  return BlockSearch(brightness, references, warps, settings).Found();
+  BlockSearch search(brightness, references, warps, settings);
+  // Every second depth is compared in pictures of half the size, where its disparity is that of all
+  // depths here. Then only depths near those that were found are compared.
+  std::vector<Image<uint8_t>> halved_references;
+  std::vector<PlaneWarp> halved_warps;
+  for (size_t r = 0; r < references.size(); ++r) {
+    halved_references.push_back(HalvedImage(references[r]));
+    halved_warps.push_back(HalvedWarp(warps[r]));
+  }
+  const SearchSettings of_halved = {std::max(settings.block_bits - 1, kLeastBlockBits),
+                                    settings.step / 8};
+  const Image<uint8_t> halved = HalvedImage(brightness);
+  const BlockField coarse =
+      BlockSearch(halved, halved_references, halved_warps, of_halved).FoundOf(kEvenDepths);
+  const int shift = of_halved.block_bits + 1 - settings.block_bits;
+  return std::move(search).Found([&](int column, int row) {
+    const auto depth_at = [&](int x, int y) {
+      const int nearest_x = std::clamp(x, 0, coarse.columns - 1);
+      const int nearest_y = std::clamp(y, 0, coarse.rows - 1);
+      return coarse.depths[static_cast<size_t>(nearest_y) * coarse.columns + nearest_x];
+    };
+    const int x = column >> shift, y = row >> shift;
+    const int depth = depth_at(x, y);
+    Depths depths = 0;
+    for (int d = std::max(depth - 2, 0); d <= std::min(depth + 2, kDepthSteps - 1); ++d)
+      depths |= Depths{1} << d;
+    for (const auto& [across, down] : {std::array{-1, 0}, {1, 0}, {0, -1}, {0, 1}})
+      depths |= Depths{1} << depth_at(x + across, y + down);
+    return depths;
+  });
 }
 
 }  // namespace lf

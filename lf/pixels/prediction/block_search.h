@@ -20,8 +20,8 @@ struct SearchSettings {
 
 // Returns the blocks of an image. A block is predicted by all reference images or by one of them.
 // Its depth and mask are those with the least sum of absolute differences of brightness, plus the
-// estimated cost of the bits that describe them. Equal arguments give equal blocks on every
-// machine.
+// estimated cost of the bits that describe them. Depths are searched in pictures of half the size
+// first, and then near those that were found. Equal arguments give equal blocks on every machine.
 //   brightness  of the image, and of each reference image (brightness.h)
 //   warps       one for each reference image, 1 to kMostReferences
 BlockField SearchBlocks(const Image<uint8_t>& brightness,

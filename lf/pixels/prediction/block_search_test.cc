@@ -82,7 +82,7 @@ TEST(BlockSearch, CoarserQuantisersGiveSmootherDepths) {
       count += found.depths[i] != found.depths[i - 1] ? 1 : 0;
     return count;
   };
-  const int fine = changes(0), middle = changes(4), coarse = changes(400);
+  const int fine = changes(0), middle = changes(12), coarse = changes(400);
   EXPECT_GT(fine, 3 * middle / 2);
   EXPECT_EQ(coarse, 0);
 }

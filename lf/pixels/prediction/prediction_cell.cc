@@ -12,10 +12,10 @@ namespace {
 // Returns true if all pixels have the same displacement. Then positions need not be computed for
 // each corner of a cell: they differ by whole pixels.
 bool IsShift(const PlaneWarp& warp) {
-  constexpr int64_t kOne = int64_t{1} << kWarpBits;
+  constexpr int64_t kUnit = int64_t{1} << kWarpBits;
   const auto& [across, down, scale] = warp.far;
-  return across[0] == kOne && across[1] == 0 && down[0] == 0 && down[1] == kOne && scale[0] == 0 &&
-         scale[1] == 0 && scale[2] == kOne && warp.step[2] == 0;
+  return across[0] == kUnit && across[1] == 0 && down[0] == 0 && down[1] == kUnit &&
+         scale[0] == 0 && scale[1] == 0 && scale[2] == kUnit && warp.step[2] == 0;
 }
 
 }  // namespace
