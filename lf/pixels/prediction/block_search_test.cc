@@ -10,7 +10,7 @@
 namespace lf {
 namespace {
 
-// Waves of several lengths and directions, so that no two places look alike.
+// Waves of several lengths and directions, so that all places look different.
 double Texture(double x, double y) {
   return 128 + 40 * std::sin(0.31 * x + 0.11 * y) + 30 * std::sin(0.17 * y - 0.23 * x + 1) +
          25 * std::sin(0.052 * x * std::cos(0.3) + 0.41 * y);
