@@ -4,7 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <utility>
 
+#include "lf/pixels/codec/adaptive_bits.h"
 #include "lf/pixels/codec/entropy.h"
 
 namespace lf {
@@ -40,18 +44,30 @@ uint8_t ExpectedMask(const BlockField& blocks, size_t block) {
   return block >= columns ? blocks.masks[block - columns] : uint8_t{0};
 }
 
-void AppendBytes(std::span<const uint8_t> bytes, std::string* code) {
-  std::string compressed;
-  AppendCompressed(bytes, &compressed);
-  AppendNumber(compressed.size(), code);
-  *code += compressed;
-}
+// The contexts of the bits that describe blocks.
+struct BlockContexts {
+  // Indexed by the number of blocks, on the left and above, that have an unexpected depth.
+  std::array<BitContext, 3> is_other_depth;
+  BitContext is_less;  // the index of depth is less than expected
+  NumberContexts<5> difference;
+  // Indexed by whether the block on the left has an unexpected mask, and that above.
+  std::array<std::array<BitContext, 2>, 2> is_other_mask;
+  NumberContexts<kMostReferences> mask;
+};
 
-[[nodiscard]] bool TakeCompressed(std::string_view* code, std::span<uint8_t> bytes) {
-  uint64_t size = 0;
-  std::string_view compressed;
-  return TakeNumber(code, code->size(), &size) && TakeBytes(code, size, &compressed) &&
-         Decompress(compressed, bytes);
+// Calls visit(block, depth context, mask context) for each block, in turn. It returns whether depth
+// and mask of the block are other than expected.
+template <class Visit>
+void ForEachBlock(const BlockField& blocks, BlockContexts* contexts, const Visit& visit) {
+  const auto columns = static_cast<size_t>(blocks.columns);
+  std::vector<std::array<bool, 2>> others(columns);  // of the blocks above
+  for (size_t block = 0; block < blocks.depths.size(); ++block) {
+    const size_t column = block % columns;
+    const std::array<bool, 2> left = column > 0 ? others[column - 1] : std::array{false, false};
+    const std::array<bool, 2> upper = others[column];
+    others[column] = visit(block, &contexts->is_other_depth[left[0] + upper[0]],
+                           &contexts->is_other_mask[left[1]][upper[1]]);
+  }
 }
 
 [[nodiscard]] bool TakeWarp(std::string_view* code, PlaneWarp* warp) {
@@ -63,18 +79,48 @@ void AppendBytes(std::span<const uint8_t> bytes, std::string* code) {
   return IsWithinLimits(*warp);
 }
 
-[[nodiscard]] bool TakeBlocks(std::string_view* code, size_t reference_count, BlockField* blocks) {
-  const size_t count = blocks->depths.size();
-  const unsigned masks = 1U << reference_count;
-  std::vector<uint8_t> depths(count), masks_read(count);
-  if (!TakeCompressed(code, depths) || !TakeCompressed(code, masks_read)) return false;
-  for (size_t i = 0; i < count; ++i) {
-    if (depths[i] >= kDepthSteps || masks_read[i] >= masks) return false;
-    blocks->depths[i] = static_cast<uint8_t>((ExpectedDepth(*blocks, i) + depths[i]) % kDepthSteps);
-    blocks->masks[i] = static_cast<uint8_t>(ExpectedMask(*blocks, i) ^ masks_read[i]);
-    if (blocks->masks[i] == 0) return false;
-  }
-  return true;
+[[nodiscard]] bool TakeBlocks(std::string_view code, size_t reference_count, BlockField* blocks) {
+  BitReader reader(code);
+  BlockContexts contexts;
+  bool is_whole = true;
+  ForEachBlock(*blocks, &contexts, [&](size_t block, BitContext* of_depth, BitContext* of_mask) {
+    int depth = ExpectedDepth(*blocks, block);
+    const bool is_other_depth = reader.Take(of_depth);
+    if (is_other_depth) {
+      const bool is_less = reader.Take(&contexts.is_less);
+      const int difference = static_cast<int>(contexts.difference.Take(&reader)) + 1;
+      depth = (depth + (is_less ? kDepthSteps - difference : difference)) % kDepthSteps;
+    }
+    unsigned mask = ExpectedMask(*blocks, block);
+    const bool is_other_mask = reader.Take(of_mask);
+    if (is_other_mask) mask ^= contexts.mask.Take(&reader);
+    is_whole = is_whole && mask != 0 && mask >> reference_count == 0;
+    blocks->depths[block] = static_cast<uint8_t>(depth);
+    blocks->masks[block] = static_cast<uint8_t>(mask);
+    return std::array{is_other_depth, is_other_mask};
+  });
+  return is_whole && reader.IsAtEnd();
+}
+
+std::string BytesOfBlocks(const BlockField& blocks) {
+  BitWriter writer;
+  BlockContexts contexts;
+  ForEachBlock(blocks, &contexts, [&](size_t block, BitContext* of_depth, BitContext* of_mask) {
+    // The difference modulo the number of depths, from -32 to 31.
+    int difference =
+        (blocks.depths[block] - ExpectedDepth(blocks, block) + kDepthSteps) % kDepthSteps;
+    if (difference >= kDepthSteps / 2) difference -= kDepthSteps;
+    writer.Put(difference != 0, of_depth);
+    if (difference != 0) {
+      writer.Put(difference < 0, &contexts.is_less);
+      contexts.difference.Put(static_cast<uint32_t>(std::abs(difference) - 1), &writer);
+    }
+    const unsigned change = blocks.masks[block] ^ ExpectedMask(blocks, block);
+    writer.Put(change != 0, of_mask);
+    if (change != 0) contexts.mask.Put(change, &writer);
+    return std::array{difference != 0, change != 0};
+  });
+  return std::move(writer).Finished();
 }
 
 }  // namespace
@@ -98,15 +144,7 @@ std::string BytesOfPrediction(const PredictionCode& prediction) {
       AppendSigned(warp.step[row], &code);
     }
   }
-  std::vector<uint8_t> depths(blocks.depths.size()), masks(blocks.masks.size());
-  for (size_t i = 0; i < depths.size(); ++i) {
-    depths[i] = static_cast<uint8_t>((blocks.depths[i] + kDepthSteps - ExpectedDepth(blocks, i)) %
-                                     kDepthSteps);
-    masks[i] = static_cast<uint8_t>(blocks.masks[i] ^ ExpectedMask(blocks, i));
-  }
-  AppendBytes(depths, &code);
-  AppendBytes(masks, &code);
-  return code;
+  return code + BytesOfBlocks(blocks);
 }
 
 Result<PredictionCode> ReadPrediction(const CodeHead& head) {
@@ -128,7 +166,7 @@ Result<PredictionCode> ReadPrediction(const CodeHead& head) {
     if (!TakeWarp(&code, &read.plan.warps.emplace_back())) return DamagedPrediction("a warp");
   }
   read.plan.blocks = MakeBlockField(size.width, size.height, static_cast<int>(bits), 0);
-  if (!TakeBlocks(&code, read.plan.warps.size(), &read.plan.blocks) || !code.empty())
+  if (!TakeBlocks(code, read.plan.warps.size(), &read.plan.blocks))
     return DamagedPrediction("a block");
   return read;
 }
