@@ -11,9 +11,10 @@ namespace lf {
 namespace {
 
 constexpr std::string_view kMagic = "LFIM";
+// Images that are neither predicted nor coded by contexts are written in the first version, which
+// earlier builds read.
+constexpr uint64_t kFirstVersion = 1;
 constexpr uint64_t kVersion = 2;
-// Images that are not predicted are written in this version, which knows no prediction.
-constexpr uint64_t kVersionAlone = 1;
 
 Error Damaged(const std::string& what) {
   return InputError(
@@ -59,7 +60,8 @@ int CodeHead::components() const {
 void AppendHead(const CodeHead& head, std::string* code) {
   *code += kMagic;
   const CodeInfo& info = head.info;
-  AppendNumber(head.is_predicted() ? kVersion : kVersionAlone, code);
+  const bool is_first = !head.is_predicted() && info.entropy == Entropy::kPacked;
+  AppendNumber(is_first ? kFirstVersion : kVersion, code);
   AppendNumber(static_cast<uint64_t>(info.profile), code);
   AppendNumber(static_cast<uint64_t>(info.layout), code);
   AppendNumber(static_cast<uint64_t>(info.bits), code);
@@ -76,8 +78,10 @@ void AppendHead(const CodeHead& head, std::string* code) {
   AppendNumber(static_cast<uint64_t>(head.coefficient_bytes), code);
   AppendNumber(static_cast<uint64_t>(head.fraction_bits), code);
   for (const int32_t step : head.steps) AppendNumber(static_cast<uint64_t>(step), code);
-  if (!head.is_predicted()) return;
+  if (is_first) return;
+  AppendNumber(static_cast<uint64_t>(info.entropy), code);
   AppendNumber(static_cast<uint64_t>(info.reference_count), code);
+  if (!head.is_predicted()) return;
   AppendNumber(head.prediction.size(), code);
   *code += head.prediction;
 }
@@ -93,11 +97,11 @@ Result<CodeHead> TakeHead(std::string_view* code) {
   if (version > kVersion)
     return InputError(
         fmt::format("is an encoded LF image of version {}, which a newer lfrendertools has "
-                    "written; this one knows version {}: use the newer one",
+                    "written; this one knows the versions up to {}: use the newer one",
                     version, kVersion));
   CodeHead head;
   CodeInfo& info = head.info;
-  const uint64_t least_profile = version == kVersionAlone ? 0 : 1;  // thesis: never predicted
+  const uint64_t least_profile = version == kFirstVersion ? 0 : 1;  // thesis has the first version
   LF_RETURN_IF_ERROR(Take(code, "profile", least_profile, 2, &info.profile));
   LF_RETURN_IF_ERROR(Take(code, "layout", 0, 2, &info.layout));
   LF_RETURN_IF_ERROR(Take(code, "depth in bits", 8, 16, &info.bits));
@@ -133,9 +137,11 @@ Result<CodeHead> TakeHead(std::string_view* code) {
   const uint64_t largest_step = head.coefficient_bytes == 2 ? INT16_MAX : 1 << 24;
   for (int32_t& step : head.steps)
     LF_RETURN_IF_ERROR(Take(code, "step of a quantiser", 1, largest_step, &step));
-  if (version == kVersionAlone) return head;
+  if (version == kFirstVersion) return head;
+  LF_RETURN_IF_ERROR(Take(code, "entropy coder", 0, 1, &info.entropy));
   LF_RETURN_IF_ERROR(
-      Take(code, "number of reference images", 1, kMostReferenceCount, &info.reference_count));
+      Take(code, "number of reference images", 0, kMostReferenceCount, &info.reference_count));
+  if (!head.is_predicted()) return head;
   uint64_t bytes = 0;
   LF_RETURN_IF_ERROR(Take(code, "number of bytes of its prediction", 0, UINT32_MAX, &bytes));
   if (!TakeBytes(code, bytes, &head.prediction))

@@ -263,8 +263,9 @@ Result<std::string> EncodeAny(const CodecPixels& pixels, const CodecPixels* pred
                  image.height() > 0 &&
                  static_cast<long long>(image.width()) * image.height() <= kMostPixels);
         CodeHead head;
-        head.info = {image.width(),    image.height(),  layout,         8 * sizeof(Pixel),
-                     settings.profile, settings.levels, reference_count};
+        head.info = {image.width(),    image.height(),  layout,           8 * sizeof(Pixel),
+                     settings.profile, settings.levels, settings.entropy, reference_count};
+        if (settings.profile == CodecProfile::kThesis) head.info.entropy = Entropy::kPacked;
         head.prediction = prediction_code;
         ImageView<const Pixel> predicted;
         if (prediction != nullptr) predicted = std::get<Image<Pixel>>(*prediction).view();

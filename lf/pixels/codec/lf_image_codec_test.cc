@@ -67,6 +67,7 @@ PixelLayout AnyLayout(std::mt19937& random) { return static_cast<PixelLayout>(ra
 CodecSettings AnySettings(std::mt19937& random) {
   CodecSettings settings;
   settings.profile = static_cast<CodecProfile>(random() % 3);
+  settings.entropy = static_cast<Entropy>(random() % 2);
   settings.levels = static_cast<int>(1 + random() % 5);
   settings.threshold = static_cast<double>(random() % 100) / 8;
   if (random() % 2 == 0) settings.quantizer = static_cast<int>(2 + random() % 65535);

@@ -5,9 +5,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 #include "lf/core/check.h"
+#include "lf/pixels/codec/coefficient_coder.h"
 #include "lf/pixels/codec/packing.h"
 #include "lf/pixels/codec/rgb_planes.h"
 
@@ -51,6 +53,51 @@ Size LowSize(Size size, int levels) {
 }
 
 size_t DetailCount(Size size) { return size.count() - LowSize(size, 1).count(); }
+
+// Number of strips that the bands of a resolution are coded in, in all components of a tile.
+int StripCountOf(const CodeHead& head, Size tile, int resolution) {
+  // The first component is the largest.
+  const Size size = ComponentSize(head, 0, tile.width, tile.height);
+  return StripCount(LowSize(size, head.info.levels + 1 - std::max(resolution, 1)).width);
+}
+
+Rounding RoundingOf(const CodeHead& head, int resolution) {
+  return resolution == 0 || head.info.profile == CodecProfile::kLossless ? Rounding::kNearest
+                                                                         : Rounding::kDeadZone;
+}
+
+// Returns the band of an approximation.
+template <class T>
+CoefficientBand<T> ApproximationBand(Size size, T* values) {
+  return {values, size.width, size.height};
+}
+
+// Returns the bands of details, which follow each other in memory.
+//   size     of the plane that was split into these bands
+//   parents  details of the next coarser level; null if there are none
+template <class T>
+std::array<CoefficientBand<T>, 3> DetailBands(Size size, T* values,
+                                              const std::remove_const_t<T>* parents) {
+  std::array<CoefficientBand<T>, 3> bands;
+  const Size coarser = LowSize(size, 1);
+  size_t i = 0;
+  for (const Band band : {kHighLow, kLowHigh, kHighHigh}) {
+    CoefficientBand<T>& coded = bands[i++];
+    coded.values = values;
+    coded.width = BandWidth(band, size.width);
+    coded.height = BandHeight(band, size.height);
+    coded.kind = band == kHighLow   ? BandKind::kVertical
+                 : band == kLowHigh ? BandKind::kHorizontal
+                                    : BandKind::kEven;
+    values += BandSize(band, size.width, size.height);
+    if (parents == nullptr) continue;
+    coded.parent = parents;
+    coded.parent_width = BandWidth(band, coarser.width);
+    coded.parent_height = BandHeight(band, coarser.height);
+    parents += BandSize(band, coarser.width, coarser.height);
+  }
+  return bands;
+}
 
 int StepIndex(const CodeHead& head, int component, int resolution, bool is_diagonal) {
   const int first = component * (1 + 2 * head.info.levels);
@@ -168,8 +215,8 @@ void Unpredict(Size size, T* values) {
 template <class T>
 struct WaveletScratch {
   std::array<std::vector<T>, 4> components;
-  std::array<std::vector<T>, 2> low;  // low subbands of successive levels, in turn
-  std::vector<T> details;
+  // Low subbands and details of successive levels, in turn.
+  std::array<std::vector<T>, 2> low, details;
 
   static WaveletScratch& OfThread() {
     static thread_local WaveletScratch scratch;
@@ -185,8 +232,28 @@ struct WaveletScratch {
 template <class T>
 class TileReader {
  public:
-  TileReader(Transform transform, const CodeHead& head, std::span<std::string_view> sections)
-      : transform_(transform), head_(head), sections_(sections) {}
+  //   tile  size in pixels
+  TileReader(Transform transform, const CodeHead& head, Size tile,
+             std::span<std::string_view> sections)
+      : transform_(transform), head_(head), sections_(sections) {
+    if (head.info.entropy == Entropy::kPacked) return;
+    packets_.resize(sections.size());
+    int count = 0;  // components that have values
+    for (int c = 0; c < head.components(); ++c)
+      count += ComponentSize(head, c, tile.width, tile.height).count() > 0 ? 1 : 0;
+    for (size_t r = 0; r < sections.size(); ++r) {
+      const auto resolution = static_cast<int>(r);
+      is_whole_ = is_whole_ && packets_[r].Begin(transform, sections[r], count,
+                                                 StripCountOf(head, tile, resolution),
+                                                 RoundingOf(head, resolution));
+    }
+  }
+
+  // Returns true if the streams end here, as they must after all components.
+  [[nodiscard]] bool IsAtEnd() const {
+    return std::all_of(packets_.begin(), packets_.end(),
+                       [](const PacketReader& packet) { return packet.IsAtEnd(); });
+  }
 
   // Reads the next component and synthesises all its levels except the finest. Sets `finest` to the
   // subbands of the finest level, which stay in the scratch memory until the next call. Returns
@@ -222,7 +289,8 @@ class TileReader {
     resolution_ = 0;
     const Size smallest = LowSize(size, head_.info.levels);
     T* const values = WaveletScratch<T>::Room(&scratch_.low[0], smallest.count());
-    if (!TakeCoefficients(transform_, &sections_[0], smallest.count(), values)) return false;
+    if (!Take(std::array{ApproximationBand(smallest, values)}, smallest.count(), values))
+      return false;
     Unpredict(smallest, values);
     low_ = {values, Step(false), false};
     return true;
@@ -232,9 +300,11 @@ class TileReader {
   bool ReadLevel(CodedBands<T>* bands) {
     ++resolution_;
     const Size here = LowSize(size_, level() - 1);
-    T* const details = WaveletScratch<T>::Room(&scratch_.details, DetailCount(here));
-    if (!TakeCoefficients(transform_, &sections_[resolution_], DetailCount(here), details))
-      return false;
+    T* const details =
+        WaveletScratch<T>::Room(&scratch_.details[resolution_ % 2], DetailCount(here));
+    const T* const parents =
+        resolution_ > 1 ? scratch_.details[1 - resolution_ % 2].data() : nullptr;
+    if (!Take(DetailBands(here, details, parents), DetailCount(here), details)) return false;
     *bands = {here.width, here.height, {}};
     bands->bands[kLowLow] = low_;
     const T* next = details;
@@ -243,6 +313,13 @@ class TileReader {
       next += BandSize(band, here.width, here.height);
     }
     return true;
+  }
+
+  // Reads the coefficients of the component at the resolution. `values` are those of all bands.
+  [[nodiscard]] bool Take(std::span<const CoefficientBand<T>> bands, size_t count, T* values) {
+    if (head_.info.entropy == Entropy::kPacked)
+      return TakeCoefficients(transform_, &sections_[resolution_], count, values);
+    return is_whole_ && packets_[resolution_].Take(bands);
   }
 
   // Synthesises the plane whose subbands ReadLevel() has read.
@@ -263,6 +340,8 @@ class TileReader {
   const Transform transform_;
   const CodeHead& head_;
   const std::span<std::string_view> sections_;
+  std::vector<PacketReader> packets_;  // index: resolution; empty for Entropy::kPacked
+  bool is_whole_ = true;
   WaveletScratch<T>& scratch_ = WaveletScratch<T>::OfThread();
   int component_ = 0;
   Size size_;
@@ -274,11 +353,11 @@ template <class T, class Pixel>
 bool DecodeAs(Transform transform, const CodeHead& head, std::span<std::string_view> sections,
               ImageView<Pixel> pixels) {
   WaveletScratch<T>& scratch = WaveletScratch<T>::OfThread();
-  TileReader<T> reader(transform, head, sections);
+  TileReader<T> reader(transform, head, {pixels.width, pixels.height}, sections);
   const PixelScale scale{head.fraction_bits, 1 << (head.info.bits - 1), head.is_predicted()};
   CodedBands<T> bands;
   if (head.info.layout == PixelLayout::kGrey) {
-    if (!reader.Read(0, {pixels.width, pixels.height}, &bands)) return false;
+    if (!reader.Read(0, {pixels.width, pixels.height}, &bands) || !reader.IsAtEnd()) return false;
     SynthesizePixels(transform, bands, scale, pixels);
     return true;
   }
@@ -291,6 +370,7 @@ bool DecodeAs(Transform transform, const CodeHead& head, std::span<std::string_v
     if (!reader.Read(c, size, &bands)) return false;
     Synthesize(transform, bands, component);
   }
+  if (!reader.IsAtEnd()) return false;
   if (head.info.layout == PixelLayout::kMosaic) {
     SynthesizePixels(transform, mosaic, scale, pixels);
     return true;
@@ -372,7 +452,7 @@ bool DecodeReducedAs(Transform transform, const CodeHead& head,
   const int resolution = static_cast<int>(sections.size()) - 1;
   const size_t count = static_cast<size_t>(pixels.width) * pixels.height;
   WaveletScratch<T>& scratch = WaveletScratch<T>::OfThread();
-  TileReader<T> reader(transform, head, sections);
+  TileReader<T> reader(transform, head, tile, sections);
   std::array<const T*, kBands> planes{};
   for (int c = 0; c < head.components(); ++c) {
     T* const plane = WaveletScratch<T>::Room(&scratch.components[c], count);
@@ -384,6 +464,7 @@ bool DecodeReducedAs(Transform transform, const CodeHead& head,
     if (!reader.ReadLow(c, size, resolution, &low)) return false;
     CopyLow(low, LowSize(size, head.info.levels - resolution), pixels.width, pixels.height, plane);
   }
+  if (!reader.IsAtEnd()) return false;
   const PixelScale scale{LowFractionBits(head), 1 << (head.info.bits - 1), false};
   if (head.info.layout == PixelLayout::kRgb)
     MergeColours(transform, std::array{planes[0], planes[1], planes[2]}, scale, pixels);
@@ -428,7 +509,7 @@ QuantizedTile QuantizeTile(Transform transform, const CodeHead& head, ImageView<
       for (std::vector<int32_t>& plane : planes)
         for (int32_t& value : plane) value *= 2;
   }
-  QuantizedTile tile;
+  QuantizedTile tile{pixels.width, pixels.height, {}, 0};
   for (int c = 0; c < head.components(); ++c) {
     const Size whole = ComponentSize(head, c, pixels.width, pixels.height);
     const size_t first = tile.streams.size();
@@ -465,7 +546,9 @@ template QuantizedTile QuantizeTile(Transform, const CodeHead&, ImageView<const 
 // 2 * 2.5 * 6000 is within the range of int16_t.
 bool FitsInTwoBytes(int32_t largest) { return largest <= 6000; }
 
-std::string CodeOfSection(const CodeHead& head, const QuantizedTile& tile, int resolution) {
+namespace {
+
+std::string PackedSection(const CodeHead& head, const QuantizedTile& tile, int resolution) {
   std::string code;
   for (int c = 0; c < head.components(); ++c) {
     const std::vector<int32_t>& stream = tile.streams[c * (1 + head.info.levels) + resolution];
@@ -475,6 +558,29 @@ std::string CodeOfSection(const CodeHead& head, const QuantizedTile& tile, int r
       AppendCoefficients<int32_t>(stream, &code);
   }
   return code;
+}
+
+}  // namespace
+
+std::string CodeOfSection(const CodeHead& head, const QuantizedTile& tile, int resolution) {
+  if (head.info.entropy == Entropy::kPacked) return PackedSection(head, tile, resolution);
+  const int levels = head.info.levels;
+  const Size pixels = {tile.width, tile.height};
+  PacketWriter writer(StripCountOf(head, pixels, resolution), RoundingOf(head, resolution));
+  for (int c = 0; c < head.components(); ++c) {
+    const Size whole = ComponentSize(head, c, pixels.width, pixels.height);
+    if (whole.count() == 0) continue;
+    const std::vector<int32_t>* const streams =
+        &tile.streams[static_cast<size_t>(c) * (1 + levels)];
+    const int32_t* const values = streams[resolution].data();
+    if (resolution == 0) {
+      writer.Append(std::array{ApproximationBand(LowSize(whole, levels), values)});
+    } else {
+      const int32_t* const parents = resolution > 1 ? streams[resolution - 1].data() : nullptr;
+      writer.Append(DetailBands(LowSize(whole, levels - resolution), values, parents));
+    }
+  }
+  return writer.Packet();
 }
 
 template <class Pixel>

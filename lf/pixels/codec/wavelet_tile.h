@@ -23,6 +23,8 @@ void SetSteps(const CodecSettings& settings, CodeHead* head);
 // The quantised coefficients of a tile, in one stream for each component and resolution. Resolution
 // 0 is the approximation, the others are details from the coarsest level to the finest.
 struct QuantizedTile {
+  int width = 0;  // in pixels
+  int height = 0;
   std::vector<std::vector<int32_t>> streams;  // index: component * (1 + levels) + resolution
   int32_t largest = 0;                        // largest magnitude of all coefficients before
                                               // quantisation
