@@ -252,6 +252,7 @@ class CodecWords:
     profile: str
     quantizer: str
     levels: int
+    entropy: str
     reencode: bool
     threshold: float
     target_psnr: float

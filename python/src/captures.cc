@@ -266,6 +266,7 @@ void AddCaptures(py::module_& module) {
       .def_readwrite("profile", &CodecWords::profile)
       .def_readwrite("quantizer", &CodecWords::quantizer)
       .def_readwrite("levels", &CodecWords::levels)
+      .def_readwrite("entropy", &CodecWords::entropy)
       .def_readwrite("reencode", &CodecWords::reencode)
       .def_readwrite("threshold", &CodecWords::threshold)
       .def_readwrite("target_psnr", &CodecWords::target_psnr);

@@ -302,6 +302,8 @@ class World:
         profile = "default" if "lossy" in source else "recorded" if "recorded" in source else "lossless"
         if source in ("store by resolution", "coarser store"):
             words.append("--by-resolution")
+        if source in ("store by resolution", "coarser store") or "lossy" in source:
+            words += ["--entropy", "contexts"]
         self.make("lfcompressor", *words, "-o", store, "--profile", profile)
         if source == "coarser store":
             # The store of masked LF images alone has one file, which has all their pixels.

@@ -154,6 +154,26 @@ class CompressorTest(StoreTest):
         self.assertEqual((self.folder / "out0/frame_0001.exr").read_bytes(),
                          (self.folder / "out2/frame_0001.exr").read_bytes())
 
+    def test_contexts_keep_the_same_pixels_in_fewer_bytes(self):
+        field, path = write_field(self.folder / "field", smooth), write_path(self.folder)
+        for profile in ("default", "lossless"):
+            frames, sizes = [], []
+            for entropy in ("packed", "contexts"):
+                store, out = self.folder / f"{profile}-{entropy}.lfs", self.folder / f"{profile}-{entropy}"
+                report = self.report(field, "-o", store, "--profile", profile, "--reencode", "--entropy", entropy,
+                                     "--verify")
+                self.assertEqual("contexts" in report["codec"], entropy == "contexts")
+                sizes.append(report["store_bytes"])
+                self.succeeds(RENDERER, store, path, "-o", out, "--format", "png")
+                frames.append([np.asarray(Image.open(frame)).tolist() for frame in sorted(out.glob("*.png"))])
+            self.assertTrue(frames[0])
+            self.assertEqual(*frames)
+            self.assertLess(sizes[1], sizes[0])
+        self.fails(3, ["coded by contexts"], COMPRESSOR, field, "-o", self.folder / "default-contexts.lfs", "--verify",
+                   "--reencode")
+        self.fails(2, ["--entropy contexts", "--profile thesis"], COMPRESSOR, field, "-o", self.store, "--profile",
+                   "thesis", "--entropy", "contexts")
+
     # Failures
 
     def test_usage(self):

@@ -16,10 +16,17 @@ Result<CodecProfile> ProfileOf(const std::string& word) {
       fmt::format("{{profile {}}}: expected one of default, thesis, lossless, recorded", word));
 }
 
+Result<Entropy> EntropyOf(const std::string& word) {
+  if (word == "packed") return Entropy::kPacked;
+  if (word == "contexts") return Entropy::kContexts;
+  return UsageError(fmt::format("{{entropy {}}}: expected packed or contexts", word));
+}
+
 }  // namespace
 
 Result<void> SetCodec(const CodecWords& words, CompressOptions* options) {
   LF_ASSIGN_OR_RETURN(options->codec.profile, ProfileOf(words.profile));
+  LF_ASSIGN_OR_RETURN(options->codec.entropy, EntropyOf(words.entropy));
   const bool is_thesis = words.profile == "thesis", is_recorded = words.profile == "recorded";
   const bool is_lossless = is_recorded || words.profile == "lossless";
   options->codec.levels = words.levels > 0 ? words.levels : is_thesis ? 1 : 4;
@@ -29,6 +36,10 @@ Result<void> SetCodec(const CodecWords& words, CompressOptions* options) {
         "{{threshold}} and {{target_psnr}} cannot be used with {{profile {}}}, which drops no "
         "details: leave them out",
         words.profile));
+  if (is_thesis && options->codec.entropy != Entropy::kPacked)
+    return UsageError(
+        "{entropy contexts} cannot be used with {profile thesis}, whose coefficients are packed: "
+        "leave one of them out");
   if (words.quality_by_use && words.profile != "default")
     return UsageError(fmt::format(
         "{{quality_by_use}} cannot be used with {{profile {}}}, which has no threshold for each LF "

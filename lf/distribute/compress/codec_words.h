@@ -13,10 +13,11 @@ namespace lf {
 struct CodecWords {
   std::string profile = "default";  // default, thesis, lossless or recorded
   std::string quantizer = "8bit";
-  int levels = 0;          // 0: the default of the profile
-  double threshold = -1;   // below 0: the default of the profile
-  double target_psnr = 0;  // in dB; 0: the threshold is not searched for
-  bool reencode = false;   // true: no image file is kept
+  std::string entropy = "packed";  // packed or contexts
+  int levels = 0;                  // 0: the default of the profile
+  double threshold = -1;           // below 0: the default of the profile
+  double target_psnr = 0;          // in dB; 0: the threshold is not searched for
+  bool reencode = false;           // true: no image file is kept
   bool quality_by_use = false;
 
   friend bool operator==(const CodecWords&, const CodecWords&) = default;

@@ -36,7 +36,8 @@ TEST(CodecWords, WordsThatDoNotExistOrContradictAreRefused) {
   for (const CodecWords& wrong :
        {CodecWords{.profile = "best"}, CodecWords{.profile = "lossless", .threshold = 3},
         CodecWords{.profile = "lossless", .target_psnr = 40}, CodecWords{.quantizer = "16"},
-        CodecWords{.profile = "thesis", .quantizer = "many"}}) {
+        CodecWords{.profile = "thesis", .quantizer = "many"}, CodecWords{.entropy = "best"},
+        CodecWords{.profile = "thesis", .entropy = "contexts"}}) {
     CompressOptions options;
     const Result<void> set = SetCodec(wrong, &options);
     ASSERT_FALSE(set) << wrong.profile << " " << wrong.quantizer;

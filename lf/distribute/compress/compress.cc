@@ -399,17 +399,18 @@ std::string NameOf(const CodecSettings& settings, KeepFiles files,
   const char* const kept = files == KeepFiles::kSmaller ? ", or the image file if it is smaller"
                            : files == KeepFiles::kAll   ? ", or the image file"
                                                         : "";
+  const char* const entropy = settings.entropy == Entropy::kContexts ? ", coded by contexts" : "";
   switch (settings.profile) {
     case CodecProfile::kThesis:
       return fmt::format("thesis, levels {}, threshold {}, quantizer {}", settings.levels,
                          settings.threshold, settings.quantizer);
     case CodecProfile::kDefault:
-      return fmt::format("default, levels {}, threshold {}{}{}", settings.levels,
-                         settings.threshold, factors.Words(), kept);
+      return fmt::format("default, levels {}, threshold {}{}{}{}", settings.levels,
+                         settings.threshold, factors.Words(), entropy, kept);
     case CodecProfile::kLossless:
       break;
   }
-  return fmt::format("{}, levels {}{}", kLosslessCodec, settings.levels, kept);
+  return fmt::format("{}, levels {}{}{}", kLosslessCodec, settings.levels, entropy, kept);
 }
 
 Result<CompressReport> Compress(const CompressSource& source, const CompressOptions& options,
