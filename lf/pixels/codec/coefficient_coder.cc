@@ -2,35 +2,11 @@
 #include "lf/pixels/codec/coefficient_coder.h"
 
 #include <algorithm>
-#include <bit>
 
-#include "lf/core/check.h"
 #include "lf/pixels/codec/band_activities.h"
 #include "lf/pixels/codec/entropy.h"
 
 namespace lf {
-
-bool PlainBits::Take(int count, uint32_t* bits) {
-  if (next_bit_ + count > 8 * bytes_.size()) return false;
-  uint64_t window = 0;
-  const size_t first = next_bit_ / 8;
-  for (size_t i = 0; i < 5 && first + i < bytes_.size(); ++i)
-    window |= uint64_t{static_cast<uint8_t>(bytes_[first + i])} << (8 * i);
-  *bits = static_cast<uint32_t>(window >> (next_bit_ % 8) & ((uint64_t{1} << count) - 1));
-  next_bit_ += count;
-  return true;
-}
-
-bool PlainBits::TakeGamma(uint32_t* number) {
-  int count = 0;
-  for (uint32_t bit = 0; Take(1, &bit); ++count) {
-    if (bit == 0) continue;
-    if (count > 31 || !Take(count, number)) return false;
-    *number |= 1U << count;
-    return true;
-  }
-  return false;
-}
 
 bool PacketReader::Begin(Transform transform, std::string_view packet, int component_count,
                          int strip_count, Rounding rounding) {

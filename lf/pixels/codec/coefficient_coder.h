@@ -9,9 +9,12 @@
 // coefficients, and magnitudes beyond the escape.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <string>
 #include <string_view>
@@ -73,12 +76,33 @@ class PlainBits {
  public:
   explicit PlainBits(std::string_view bytes = {}) : bytes_(bytes) {}
   // Reads up to 32 bits. Returns false if there are fewer.
-  [[nodiscard]] bool Take(int count, uint32_t* bits);
+  [[nodiscard]] bool Take(int count, uint32_t* bits) {
+    if (next_bit_ + count > 8 * bytes_.size()) return false;
+    *bits = static_cast<uint32_t>(Window() & ((uint64_t{1} << count) - 1));
+    next_bit_ += count;
+    return true;
+  }
   // Reads a number above 0 in Elias's gamma code: n zeros and a one, then its n lowest bits.
-  [[nodiscard]] bool TakeGamma(uint32_t* number);
+  [[nodiscard]] bool TakeGamma(uint32_t* number) {
+    const int count = std::countr_zero(Window());
+    if (count > 31) return false;
+    next_bit_ += count + 1;
+    if (!Take(count, number)) return false;
+    *number |= 1U << count;
+    return true;
+  }
   bool is_at_end() const { return (next_bit_ + 7) / 8 == bytes_.size(); }
 
  private:
+  // Returns the next bits, of which at least 57 are those of the bytes; zeros follow the last one.
+  uint64_t Window() const {
+    const size_t first = next_bit_ / 8;
+    uint64_t window = 0;
+    if (first >= bytes_.size()) return 0;
+    std::memcpy(&window, bytes_.data() + first, std::min<size_t>(8, bytes_.size() - first));
+    return window >> (next_bit_ % 8);
+  }
+
   std::string_view bytes_;
   uint64_t next_bit_ = 0;
 };

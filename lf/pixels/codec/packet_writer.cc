@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdlib>
 
-#include "lf/core/check.h"
 #include "lf/pixels/codec/band_activities.h"
 #include "lf/pixels/codec/coefficient_coder.h"
 #include "lf/pixels/codec/entropy.h"
