@@ -2,8 +2,10 @@
 // lfvisualizer LIGHTFIELD PATH: shows what was captured and what a camera path needs of it.
 #include <fmt/format.h>
 
+#include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "tools/common/allow_missing.h"
@@ -222,7 +224,8 @@ lf::Result<void> Run(Arguments& a, const lf::CommonOptions& common) {
   LF_ASSIGN_OR_RETURN(a.page.film, FilmOf(a, common));
   if (a.text) return PrintText(a, common);
   LF_ASSIGN_OR_RETURN(const lf::MissingLimit limit, a.allow_missing.Limit());
-  const std::atomic<bool>& interrupted = lf::CatchInterrupts();
+  const std::atomic<bool>& interrupted = lf::CatchInterruptsOfJob();
+  std::optional<lf::EndsSoon> until_served(std::in_place);
   a.page.light_field = a.light_field.path;
   a.page.light_field_options = a.light_field.Words();
   a.page.path = a.path;
@@ -260,6 +263,8 @@ lf::Result<void> Run(Arguments& a, const lf::CommonOptions& common) {
   LF_ASSIGN_OR_RETURN(const auto server, lf::PageServer::Open(*scene, a.port));
   LF_RETURN_IF_ERROR(lf::PrintReport(server->address() + "\n"));
   lf::LogInfo("open this address in a browser; Ctrl-C ends lfvisualizer");
+  // A server ends as it should, with exit code 0, however long its last answers take.
+  until_served.reset();
   const std::jthread check([&] { WarnOfDisagreement(a, interrupted, scene.get()); });
   return server->ServeUntil(interrupted);
 }
