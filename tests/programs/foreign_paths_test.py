@@ -296,13 +296,19 @@ class ForeignPathsTest(ProgramTestCase):
         self.assertGreater(pictures[1].max(), 0.1)
         self.assertLessEqual(np.abs(pictures[0][:, :30] - pictures[1]).max(), 1e-6)
 
+    def samples(self, text, name):
+        """Returns the values of an attribute of a .usda file in each frame; it has one value if they are equal."""
+        if constant := re.search(rf" {name} = (\S+)", text):
+            return [float(constant[1])] * len(self.cameras)
+        samples = re.search(rf" {name}.timeSamples = {{(.*?)}}", text, re.S)[1]
+        return [float(value.split(":")[1]) for value in samples.split(",") if value.strip()]
+
     def test_usda_holds_an_off_centre_principal_point(self):
         text = self.convert(self.calibration("transforms.json"), "frames.usda", "--focus-distance", 2).read_text()
         focal = [float(value) for value in re.search(r"focalLength.timeSamples = {(.*?)}", text, re.S)[1].replace(
             ",", " ").replace(":", " ").split()[1::2]]
         for axis, size, offset in ("horizontal", 300, 150 - 170), ("vertical", 200, 90 - 100):
-            apertures, offsets = (list(eval("{" + re.search(rf" {axis}{name}.timeSamples = {{(.*?)}}", text, re.S)[1]
-                                            + "}").values()) for name in ("Aperture", "ApertureOffset"))
+            apertures, offsets = (self.samples(text, axis + name) for name in ("Aperture", "ApertureOffset"))
             for camera, f, aperture, moved in zip(self.cameras, focal, apertures, offsets):
                 focal_px = 100 / np.tan(np.radians(camera.vertical_deg / 2))
                 self.assertAlmostEqual(aperture / f, size / focal_px, delta=1e-9)
