@@ -163,7 +163,7 @@ class CompressorTest(StoreTest):
                 report = self.report(field, "-o", store, "--profile", profile, "--reencode", "--entropy", entropy,
                                      "--verify")
                 self.assertEqual("contexts" in report["codec"], entropy == "contexts")
-                sizes.append(report["store_bytes"])
+                sizes.append(report["code_bytes"])
                 self.succeeds(RENDERER, store, path, "-o", out, "--format", "png")
                 frames.append([np.asarray(Image.open(frame)).tolist() for frame in sorted(out.glob("*.png"))])
             self.assertTrue(frames[0])
