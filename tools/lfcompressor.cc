@@ -136,7 +136,7 @@ void AddQuality(CLI::App& app, Arguments& a) {
       "How wavelet coefficients become bytes\n"
       "packed: several in a byte, compressed by zstd\n"
       "contexts: each by what its neighbours predict, for slow networks and small disks. The same "
-      "pixels take 3 to 29 % fewer bytes, but decoding takes about twice as long. Not for "
+      "pixels take 3 to 29 % fewer bytes, but decoding takes two to three times as long. Not for "
       "--profile "
       "thesis.");
   quality.AddFlag("--reencode", a.codec.reencode,

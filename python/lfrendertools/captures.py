@@ -183,8 +183,8 @@ def compress(field: LightField, store: FilePath, *, profile: str = "default", th
     quantizer : str
         For the profile "thesis": "8bit", or the number of values of a coefficient.
     entropy : {"packed", "contexts"}
-        How wavelet coefficients become bytes. "contexts" takes 3 to 29 % fewer bytes for the same pixels, and about
-        twice as long to decode. Not for the profile "thesis".
+        How wavelet coefficients become bytes. "contexts" takes 3 to 29 % fewer bytes for the same pixels, and two
+        to three times as long to decode. Not for the profile "thesis".
     reencode : bool
         True: encode all LF images, also those whose files are smaller.
     shard_size : str

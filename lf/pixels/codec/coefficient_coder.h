@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The entropy coder: turns the quantised coefficients of a packet into bytes and back
-// (doc/formats/lf_image.md, "Packets"). Internal to this folder.
+// (doc/formats/lf_image.md, "Packets coded by contexts"). Internal to this folder.
 //
 // A range coder by asymmetric numeral systems (rANS; Duda 2013) codes each coefficient by the
 // distribution that its neighbours predict (band_contexts.h). Up to 32 coders take turns, one for

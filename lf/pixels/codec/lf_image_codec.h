@@ -49,7 +49,7 @@ enum class CodecProfile : uint8_t {
 enum class Entropy : uint8_t {
   kPacked = 0,    // several in a byte, compressed by zstd
   kContexts = 1,  // each by a distribution that its neighbours predict: 3 to 29 % fewer bytes, but
-                  // decoding takes about twice as long. kThesis does not have it
+                  // decoding takes two to three times as long. kThesis does not have it
 };
 
 struct CodecSettings {
