@@ -78,6 +78,14 @@ class LfImageStore {
   // in a packed store; 0 if the image is missing or the size is not known.
   virtual uint64_t StoredBytes(LfImageId /*id*/) const { return 0; }
 
+  // Returns the memory that the decoded reference images of all LF images take together
+  // (pixels/codec/predicted_image.h); 0 if no LF image is predicted. A store that can keep less
+  // decodes reference images again and again.
+  virtual uint64_t ReferenceBytes() const { return 0; }
+  // Sets the memory for decoded reference images that are kept from one call of Load() to later
+  // ones. Not at the same time as other calls.
+  virtual void LimitReferences(uint64_t /*most_bytes*/) {}
+
   // Announces that the image will be loaded soon, so that the disk may begin to read it. Does not
   // wait, and ignores failures, which Load() will report. May be called by many threads at the same
   // time.

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,9 @@ struct PackedStorePlan {
   // one more than the most fronts of an LF image that are of use by themselves. 0: the store is not
   // by resolution. Not together with shards, and not for densified stores.
   size_t part_count = 0;
+  // True: LF images may be predicted from others (CodedImage::references). Not together with
+  // part_count, because predicted images have no smaller pictures.
+  bool is_predicted = false;
   // Makes a densified store. Must be set if an LF image is virtual.
   std::optional<DensifiedPlan> densified = {};
   // `source` and `version` are for information only. They may differ when an unfinished store is
@@ -62,6 +66,15 @@ struct CodedImage {
   // Ends of the fronts of `code` that PackedCodeReader::ReadFront() can read, ascending. Empty if
   // there is a mask, because a smaller picture would need a smaller mask.
   std::vector<uint64_t> front_ends = {};
+  // LF images whose decoded pixels are the reference images of `code`, in their order in it
+  // (pixels/codec/predicted_image.h). Empty: the image is not predicted.
+  std::vector<LfImageId> references = {};
+};
+
+// An LF image of a group, which PackedStoreWriter::AddGroup() writes.
+struct GroupedImage {
+  LfImageId id;
+  CodedImage image;
 };
 
 // Writes a packed store. Until Finish() its file is STORE.lfs.unfinished, which no reader accepts
@@ -113,6 +126,10 @@ class PackedStoreWriter {
   // be added afterwards. kUsage: a file that does not belong to the store has the name of the next
   // shard.
   Result<void> Add(LfImageId id, const CodedImage& image);
+  // Adds LF images as Add() does, but in one batch and one shard: either all of them survive the
+  // end of the program, or none. The reference images of each stand before it in `images`, or are
+  // in the store. The plan must have is_predicted if there are any.
+  Result<void> AddGroup(std::span<const GroupedImage> images);
 
   // The functions of planes are for densified stores. They may be called by many threads at the
   // same time, also together with Add(). Planes are committed in the same batches as LF images.
