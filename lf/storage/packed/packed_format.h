@@ -56,6 +56,13 @@ inline constexpr const char* kVirtualTable = "virtual_images";
 // Further table of a store that leaves out LF images on purpose. A densified store leaves out none.
 inline constexpr const char* kLeftOutName = "left_out";
 inline constexpr const char* kLeftOutTable = "create table left_out (id integer primary key);";
+// Further table of a store of predicted LF images: the ids of their reference images
+// (reference_table.h). Such a store is not by resolution, and has fronts.
+inline constexpr const char* kPredictedName = "predicted";
+inline constexpr const char* kPredictedTable =
+    "create table predicted (id integer primary key, reference_ids blob not null);";
+// Setting that only a store of predicted LF images has.
+inline constexpr const char* kPredictedKey = "predicted";
 // Setting that only a densified store has.
 inline constexpr const char* kDensifiedKey = "densified";
 
@@ -69,6 +76,9 @@ inline Result<Database> OpenStoreDatabase(const std::filesystem::path& path) {
        {blobs + kFrontsTable, std::string(), std::string(kRangesTable), blobs})
     for (const char* const further : {"", kDensifiedTables, kLeftOutTable})
       scripts.push_back(tables + of_images + further);
+  for (const std::string& of_images : {blobs + kFrontsTable, std::string()})
+    for (const char* const further : {"", kDensifiedTables, kLeftOutTable})
+      scripts.push_back(tables + of_images + further + kPredictedTable);
   return Database::Open(path, kStoreFormat, scripts);
 }
 inline Result<Database> OpenShardDatabase(const std::filesystem::path& path) {

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "lf/core/geometry.h"
+#include "lf/core/ids.h"
 #include "lf/core/result.h"
 #include "lf/light_field/model/light_field.h"
 #include "lf/light_field/model/light_field_identity.h"
@@ -81,6 +82,7 @@ struct PackedStoreFacts {
   size_t part_count = 0;      // number of parts; 0: the store is not by resolution
   size_t found_parts =
       0;  // number of the first parts that are there; at least 1 if there are parts
+  size_t predicted_count = 0;  // number of LF images that are predicted from others
   // Number of LF images that were encoded, but of which the parts that are there lack bytes,
   // because the copy of a part is incomplete.
   size_t cut_count = 0;
@@ -120,6 +122,9 @@ Result<std::optional<StoreFilms>> ReadStoreFilms(const std::filesystem::path& pa
 // Returns PackedStoreFacts::whole without reading the other facts.
 Result<LightFieldIdentity> ReadWholeIdentity(const std::filesystem::path& path);
 
+// Returns the name of the LF image that has this id in the store, for messages about it.
+Result<std::string> NameInStore(const std::filesystem::path& path, LfImageId id);
+
 // Tells in which file of a store one encoded LF image is, and what it holds. Takes 32 bytes.
 struct PackedCode {
   static constexpr uint32_t kNotListed = UINT32_MAX;
@@ -158,6 +163,10 @@ Result<std::vector<PackedCode>> FindCodes(const std::filesystem::path& path,
 // virtual LF image is never taken for a recorded one of the same name.
 Result<std::vector<PackedCode>> FindCodes(const std::filesystem::path& path,
                                           const LightField& light_field);
+
+// Returns an entry for each LF image of the store, in the order of their ids in it. An LF image
+// without an encoded image has an entry that is not listed. kInput as ReadPackedStore().
+Result<std::vector<PackedCode>> CodesInStore(const std::filesystem::path& path);
 
 // Reads encoded images, one at a time, for one thread. Opens shards when they are needed, and keeps
 // a few open.

@@ -14,12 +14,13 @@
 #include "lf/core/check.h"
 #include "lf/core/file.h"
 #include "lf/core/file_lock.h"
-#include "lf/storage/packed/code_fronts.h"
+#include "lf/storage/packed/blob_table.h"
 #include "lf/storage/packed/packed_format.h"
 #include "lf/storage/packed/part_file.h"
 #include "lf/storage/packed/part_set.h"
 #include "lf/storage/packed/plan_settings.h"
 #include "lf/storage/packed/plane_table.h"
+#include "lf/storage/packed/reference_rows.h"
 #include "lf/storage/packed/store_tables.h"
 #include "lf/storage/packed/unfinished_files.h"
 
@@ -29,6 +30,8 @@ namespace {
 
 constexpr size_t kImagesPerBatch = 64;
 constexpr std::chrono::seconds kBatchAge{2};
+
+uint64_t BytesInStore(const CodedImage& image) { return image.code.size() + image.mask.size(); }
 
 Result<bool> HasTables(Database* database) { return HasTable(database, "settings"); }
 
@@ -52,12 +55,12 @@ struct PackedStoreWriter::State {
   std::vector<bool> has;
   std::optional<Database> database;
   std::optional<Statement> insert_code;
-  std::optional<PlaneTable> planes;  // set if the store is densified
+  std::optional<PlaneTable> planes;         // set if the store is densified
+  std::optional<ReferenceRows> references;  // set if LF images may be predicted
   int shard_count = 0;
   uint64_t bytes_in_shard = 0;
-  std::optional<Database> shard;  // the last shard, to which images are added
-  std::optional<Statement> insert_blob;
-  std::optional<Statement> insert_fronts;  // set if insert_blob is
+  std::optional<Database> shard;           // the last shard, to which images are added
+  std::optional<BlobTable> blobs;          // opened when the first LF image is added
   std::optional<PartSetWriter> parts;      // set if the store is by resolution
   std::optional<Statement> insert_ranges;  // set if `parts` is
   size_t batch_size = 0;
@@ -70,13 +73,13 @@ struct PackedStoreWriter::State {
     if (lock) lock->Remove();
   }
   void Close() {
-    insert_blob.reset();
-    insert_fronts.reset();
+    blobs.reset();
     insert_ranges.reset();
     shard.reset();
     parts.reset();
     insert_code.reset();
     planes.reset();
+    references.reset();
     database.reset();
   }
 
@@ -86,9 +89,10 @@ struct PackedStoreWriter::State {
   Result<void> OpenParts(const Settings& settings);
   Result<void> OpenShard(int number);
   Result<void> BeginInBatch();
-  Result<void> PrepareFronts();
   Result<void> InsertBlob(LfImageId id, const CodedImage& image);
   Result<void> InsertRanges(LfImageId id, const CodedImage& image);
+  Result<void> MakeRoom(uint64_t bytes);
+  bool IsAddable(LfImageId id, const CodedImage& image) const;
   Result<void> Insert(LfImageId id, const CodedImage& image);
   Result<void> AddPlane(LfImageId id, PlaneKind kind, PlaneSize size, std::string_view code);
   Result<void> CommitIfDue();
@@ -180,8 +184,7 @@ Result<void> PackedStoreWriter::State::OpenShard(int number) {
         fmt::format("{}: the store needs more than {} shards, the largest number allowed: give a "
                     "larger {{shard_size}}",
                     path.string(), kMostShards));
-  insert_blob.reset();
-  insert_fronts.reset();
+  blobs.reset();
   shard.reset();
   const fs::path shard_path = ShardPath(path, number);
   LF_RETURN_IF_ERROR(CheckIsFree(shard_path, StoreOfShard(shard_path)));
@@ -214,36 +217,42 @@ Result<void> PackedStoreWriter::State::BeginInBatch() {
   return {};
 }
 
-// Prepares the SQL command that inserts fronts. An unfinished file of an earlier build gets their
-// table.
-Result<void> PackedStoreWriter::State::PrepareFronts() {
-  Database* const file = shard ? &*shard : &*database;
-  LF_ASSIGN_OR_RETURN(const bool has_fronts, HasTable(file, kFrontsName));
-  if (!has_fronts) LF_RETURN_IF_ERROR(file->Execute(kFrontsTable));
-  LF_ASSIGN_OR_RETURN(insert_fronts, file->Prepare("insert or replace into fronts values (?, ?)"));
+// Begins a new shard if this number of bytes does not fit into the last one.
+Result<void> PackedStoreWriter::State::MakeRoom(uint64_t bytes) {
+  if (shard_bytes == 0) return {};
+  if (shard_count > 0 && (bytes_in_shard == 0 || bytes_in_shard + bytes <= shard_bytes)) return {};
+  LF_RETURN_IF_ERROR(CommitBatch());
+  LF_RETURN_IF_ERROR(OpenShard(shard_count + 1));
+  bytes_in_shard = 0;
   return {};
 }
 
+bool PackedStoreWriter::State::IsAddable(LfImageId id, const CodedImage& image) const {
+  if (id.value >= has.size() || has[id.value] || image.rect.empty() || image.code.empty())
+    return false;
+  if (image.references.empty()) return true;
+  return references && image.values != StoredValues::kFile && image.front_ends.empty() &&
+         std::all_of(image.references.begin(), image.references.end(),
+                     [&](LfImageId of) { return of.value < has.size() && has[of.value]; }) &&
+         references->Allows(image.references);
+}
+
 Result<void> PackedStoreWriter::State::Insert(LfImageId id, const CodedImage& image) {
-  const uint64_t bytes = image.code.size() + image.mask.size();
-  if (shard_bytes > 0 &&
-      (shard_count == 0 || (bytes_in_shard > 0 && bytes_in_shard + bytes > shard_bytes))) {
-    LF_RETURN_IF_ERROR(CommitBatch());
-    LF_RETURN_IF_ERROR(OpenShard(shard_count + 1));
-    bytes_in_shard = 0;
-  }
+  LF_CHECK(IsAddable(id, image));
   LF_RETURN_IF_ERROR(BeginInBatch());
   LF_RETURN_IF_ERROR(parts ? InsertRanges(id, image) : InsertBlob(id, image));
   insert_code->Bind(0, int64_t{id.value}).Bind(1, int64_t{shard ? shard_count : 0});
   insert_code->Bind(2, std::string_view(kKindNames[static_cast<int>(image.values)]));
   insert_code->Bind(3, int64_t{image.rect.x_begin}).Bind(4, int64_t{image.rect.y_begin});
   insert_code->Bind(5, int64_t{image.rect.x_end}).Bind(6, int64_t{image.rect.y_end});
+  const uint64_t bytes = BytesInStore(image);
   insert_code->Bind(7, static_cast<int64_t>(bytes));
   insert_code->Bind(8, static_cast<int64_t>(image.source_bytes));
   LF_RETURN_IF_ERROR(insert_code->Run());
+  if (!image.references.empty()) LF_RETURN_IF_ERROR(references->Insert(id, image.references));
   bytes_in_shard += bytes;
   has[id.value] = true;
-  return CommitIfDue();
+  return {};
 }
 
 Result<void> PackedStoreWriter::State::InsertRanges(LfImageId id, const CodedImage& image) {
@@ -253,28 +262,10 @@ Result<void> PackedStoreWriter::State::InsertRanges(LfImageId id, const CodedIma
 }
 
 Result<void> PackedStoreWriter::State::InsertBlob(LfImageId id, const CodedImage& image) {
-  if (!insert_blob) {
-    // Uses "or replace", because the rows may exist: an earlier program may have committed it to a
-    // shard, and ended before it committed the row of the table `codes` to the store.
-    LF_ASSIGN_OR_RETURN(Statement prepared, (shard ? *shard : *database)
-                                                .Prepare("insert or replace into blobs values "
-                                                         "(?, ?, ?)"));
-    insert_blob = std::move(prepared);
-    LF_RETURN_IF_ERROR(PrepareFronts());
+  if (!blobs) {
+    LF_ASSIGN_OR_RETURN(blobs, BlobTable::Open(shard ? &*shard : &*database));
   }
-  insert_blob->Bind(0, int64_t{id.value}).BindBlob(1, image.code);
-  if (image.mask.empty())
-    insert_blob->BindNull(2);
-  else
-    insert_blob->BindBlob(2, image.mask);
-  LF_RETURN_IF_ERROR(insert_blob->Run());
-  if (!image.front_ends.empty()) {
-    LF_CHECK(image.mask.empty());
-    insert_fronts->Bind(0, int64_t{id.value});
-    insert_fronts->BindBlob(1, CodeOfFronts(image.code, image.front_ends));
-    LF_RETURN_IF_ERROR(insert_fronts->Run());
-  }
-  return {};
+  return blobs->Insert(id, image);
 }
 
 Result<void> PackedStoreWriter::State::AddPlane(LfImageId id, PlaneKind kind, PlaneSize size,
@@ -408,6 +399,10 @@ Result<PackedStoreWriter> PackedStoreWriter::Open(const fs::path& path,
         state->planes,
         PlaneTable::Open(settings, light_field, plan.densified->plane_divisor, &*state->database));
   }
+  if (plan.is_predicted) {
+    LF_ASSIGN_OR_RETURN(state->references,
+                        ReferenceRows::Open(settings, state->has, &*state->database));
+  }
   if (plan.part_count > 0) LF_RETURN_IF_ERROR(state->OpenParts(settings));
   if (state->shard_count > 0) {
     LF_RETURN_IF_ERROR(state->TakeShardsBack());
@@ -461,9 +456,27 @@ Result<void> PackedStoreWriter::Add(LfImageId id, const CodedImage& image) {
   const std::lock_guard lock(state_->mutex);
   State& state = *state_;
   if (state.failed) return *state.failed;
-  LF_CHECK(id.value < state.has.size() && !state.has[id.value]);
-  LF_CHECK(!image.rect.empty() && !image.code.empty());
-  return state.Kept(state.Insert(id, image));
+  const auto insert = [&]() -> Result<void> {
+    LF_RETURN_IF_ERROR(state.MakeRoom(BytesInStore(image)));
+    LF_RETURN_IF_ERROR(state.Insert(id, image));
+    return state.CommitIfDue();
+  };
+  return state.Kept(insert());
+}
+
+Result<void> PackedStoreWriter::AddGroup(std::span<const GroupedImage> images) {
+  const std::lock_guard lock(state_->mutex);
+  State& state = *state_;
+  if (state.failed) return *state.failed;
+  uint64_t bytes = 0;
+  for (const GroupedImage& grouped : images) bytes += BytesInStore(grouped.image);
+  const auto insert = [&]() -> Result<void> {
+    LF_RETURN_IF_ERROR(state.MakeRoom(bytes));
+    for (const GroupedImage& grouped : images)
+      LF_RETURN_IF_ERROR(state.Insert(grouped.id, grouped.image));
+    return state.CommitIfDue();
+  };
+  return state.Kept(insert());
 }
 
 bool PackedStoreWriter::HasPlane(LfImageId id, PlaneKind kind) const {

@@ -67,7 +67,9 @@ struct CodedImage {
   // there is a mask, because a smaller picture would need a smaller mask.
   std::vector<uint64_t> front_ends = {};
   // LF images whose decoded pixels are the reference images of `code`, in their order in it
-  // (pixels/codec/predicted_image.h). Empty: the image is not predicted.
+  // (pixels/codec/predicted_image.h), at most kMostReferenceIds. With their own reference images,
+  // and so on, these are at most kMostNeededImages (reference_table.h). Empty: the image is not
+  // predicted. `values` of all of them are numbers, and front_ends of a predicted image are empty.
   std::vector<LfImageId> references = {};
 };
 
@@ -122,9 +124,9 @@ class PackedStoreWriter {
 
   // Adds an LF image that the store does not have and that the plan does not leave out. Commits if
   // 64 LF images were added since the last commit, or if the first of these was added at least 2 s
-  // ago. May be called by many threads at the same time. kOutput: the disk fails; no LF image can
-  // be added afterwards. kUsage: a file that does not belong to the store has the name of the next
-  // shard.
+  // ago. The store has the reference images of a predicted LF image already. May be called by many
+  // threads at the same time. kOutput: the disk fails; no LF image can be added afterwards. kUsage:
+  // a file that does not belong to the store has the name of the next shard.
   Result<void> Add(LfImageId id, const CodedImage& image);
   // Adds LF images as Add() does, but in one batch and one shard: either all of them survive the
   // end of the program, or none. The reference images of each stand before it in `images`, or are

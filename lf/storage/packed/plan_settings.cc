@@ -60,6 +60,7 @@ constexpr SettingWords kSettingWords[] = {
     {"shard_bytes", "a {shard_size}, in bytes, of", true},
     {kPartsKey, "a number of files for resolutions ({by_resolution}) of", true},
     {kDensifiedKey, "settings of the densifier of", true},
+    {kPredictedKey, "LF images that are predicted from others, or without such LF images", false},
     {"response", "another response curve", false}};
 
 // Returns the difference of a setting, in the words of kSettingWords, or of its key.
@@ -98,6 +99,7 @@ SettingList SettingsOfPlan(const LightField& light_field, const PackedStorePlan&
                      {"film.lens_weights", films.lens_weights},
                      {"film.frames", fmt::format("{}", films.frame_count)}});
   }
+  if (plan.is_predicted) settings.push_back({kPredictedKey, "yes"});
   if (plan.densified) {
     const SettingList densified = SettingsOf(*plan.densified);
     settings.insert(settings.begin(), densified.begin(), densified.end());
@@ -122,6 +124,8 @@ std::optional<std::string> FirstDifference(const Settings& settings, const Light
                                            const PackedStorePlan& plan, bool any_shards) {
   if (!plan.densified && !settings.Text(kDensifiedKey).empty())
     return TextOfDifference(kDensifiedKey, settings.Text(kDensifiedKey), "");
+  if (!plan.is_predicted && !settings.Text(kPredictedKey).empty())
+    return TextOfDifference(kPredictedKey, settings.Text(kPredictedKey), "");
   // Older stores do not state the footprint that the pixels show.
   const auto is_free = [&](const std::string& key) {
     return (any_shards && key == "shard_bytes") ||

@@ -67,7 +67,8 @@ Result<void> CheckPlan(const LightField& light_field, const PackedStorePlan& pla
   LF_CHECK(plan.rects.empty() || plan.rects.size() == light_field.size());
   LF_CHECK(!plan.densified || !plan.LeavesOut());
   LF_CHECK(plan.part_count <= kMostParts);
-  LF_CHECK(plan.part_count == 0 || (plan.shard_bytes == 0 && !plan.densified));
+  LF_CHECK(plan.part_count == 0 ||
+           (plan.shard_bytes == 0 && !plan.densified && !plan.is_predicted));
   std::unordered_map<std::string_view, int> uses;
   for (uint32_t i = 0; i < light_field.size(); ++i) {
     const bool is_virtual = light_field.cameras[i].is_virtual;
@@ -87,11 +88,11 @@ Result<void> CheckPlan(const LightField& light_field, const PackedStorePlan& pla
 Result<void> MakeStoreTables(const LightField& light_field, const PackedStorePlan& plan,
                              Database* database) {
   const bool is_one_file = plan.shard_bytes == 0 && plan.part_count == 0;
-  LF_RETURN_IF_ERROR(database->Execute(
-      fmt::format("begin; {}{}{}{}{}{}{}{}", kSettingsTable, kIntrinsicsTable, kStoreTables,
-                  is_one_file ? kBlobsTable : "", is_one_file ? kFrontsTable : "",
-                  plan.part_count > 0 ? kRangesTable : "", plan.densified ? kDensifiedTables : "",
-                  plan.LeavesOut() ? kLeftOutTable : "")));
+  LF_RETURN_IF_ERROR(database->Execute(fmt::format(
+      "begin; {}{}{}{}{}{}{}{}{}", kSettingsTable, kIntrinsicsTable, kStoreTables,
+      is_one_file ? kBlobsTable : "", is_one_file ? kFrontsTable : "",
+      plan.part_count > 0 ? kRangesTable : "", plan.densified ? kDensifiedTables : "",
+      plan.LeavesOut() ? kLeftOutTable : "", plan.is_predicted ? kPredictedTable : "")));
   LF_RETURN_IF_ERROR(WriteSettings({{"written_by", "lfrendertools " + plan.version},
                                     {"light_field", plan.source},
                                     {"state", kUnfinished},
