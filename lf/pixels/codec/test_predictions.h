@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Drawn images of two planes with known parallax, for tests and benchmarks of predicted images.
-// Internal to this folder.
 #pragma once
 
 #include <algorithm>
@@ -8,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "lf/core/check.h"
 #include "lf/pixels/codec/predicted_image.h"
 
 namespace lf {

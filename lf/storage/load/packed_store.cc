@@ -12,6 +12,7 @@
 
 #include "lf/camera/resolution.h"
 #include "lf/core/check.h"
+#include "lf/storage/load/check_code.h"
 #include "lf/storage/load/image_reading.h"
 #include "lf/storage/load/load_mosaics.h"
 #include "lf/storage/load/opacities.h"
@@ -60,25 +61,6 @@ Result<void> CheckParts(const PackedCode& code, int unneeded_parts, const LightF
                   "missing or were "
                   "not copied to their end: copy all files of the store again",
                   light_field.ImagePath(id).string()));
-}
-
-// Checks the head of an encoded image against the store's table and the encoding, before memory is
-// allocated for its pixels.
-//   grey_too  a grey image is valid in place of `layout`
-Result<void> CheckCode(std::string_view bytes, int bits, PixelLayout layout, bool grey_too,
-                       const PixelRect& rect) {
-  LF_ASSIGN_OR_RETURN(const CodeInfo info, ReadCodeInfo(bytes));
-  if (info.width != rect.width() || info.height != rect.height())
-    return InputError(
-        fmt::format("is damaged in the packed store: its encoded image has {} x {} pixels, but the "
-                    "table of the store says {} x {}; copy or make the store again",
-                    info.width, info.height, rect.width(), rect.height()));
-  const bool has_layout = info.layout == layout || (grey_too && info.layout == PixelLayout::kGrey);
-  if (info.bits != bits || !has_layout)
-    return InputError(
-        "is damaged in the packed store: its encoded image has another number of bits or channels "
-        "than the table of the store says; copy or make the store again");
-  return {};
 }
 
 // Makes pixels R, G, B of the four colours of a reduced mosaic (DecodeReduced()).
@@ -157,6 +139,8 @@ Result<std::unique_ptr<PackedStore>> PackedStore::Open(const LightField& light_f
     LF_ASSIGN_OR_RETURN(const DisplayLevels levels, ReadDisplayLevels(light_field.folder));
     store->curve_.emplace(levels.black, levels.white);
   }
+  LF_ASSIGN_OR_RETURN(store->references_,
+                      ReferenceCache::Open(light_field.folder, light_field.encoding.bayer));
   if (content == StoreContent::kPixelsAndDepths) {
     LF_ASSIGN_OR_RETURN(store->densified_, ReadDensifiedPlan(light_field.folder));
   }
@@ -240,17 +224,15 @@ Result<int> PackedStore::LoadReducedBy(Loading* loading, LfImageId id, int divis
     };
     return LoadReducedFile(read, name, light_field_, id, divisor, tables_, &loading->part, pixels);
   }
-  const int bits = code.values == StoredValues::kUint8 ? 8 : 16;
-  LF_RETURN_IF_ERROR(CheckLevels(light_field_.encoding, bits, name));
+  LF_RETURN_IF_ERROR(CheckLevels(light_field_.encoding, BitsOf(code.values), name));
   const int left_out = FrontsLeftOut(divisor);
   if (left_out == 0) return 1;
   LF_RETURN_IF_ERROR(CheckParts(code, left_out, light_field_, id));
   const auto front = loading->reader.ReadFront(code, static_cast<size_t>(left_out));
   if (!front) return named(front.error());
   if (!*front) return 1;
-  const PixelLayout layout = is_mosaic ? PixelLayout::kMosaic : PixelLayout::kRgb;
   const std::string_view bytes = (*front)->code;
-  if (const auto ok = CheckCode(bytes, bits, layout, !is_mosaic, code.rect); !ok)
+  if (const auto ok = CheckColours(bytes, code, light_field_.encoding.bayer); !ok)
     return named(ok.error());
   const int left_out_here = static_cast<int>((*front)->left_out) + (is_mosaic ? 1 : 0);
   const int reduction = std::min(1 << left_out_here, LargestReduction(*ReadCodeInfo(bytes)));
@@ -337,16 +319,14 @@ Result<void> PackedStore::LoadRecorded(Loading* loading, LfImageId id, const Pix
         fmt::format("{}: its pixels {} (x, y) are needed, but only {} are in the packed store: "
                     "make the store again with lfcompressor from all packages that are rendered",
                     name, TextOf(inside), TextOf(code.rect)));
-  const int bits = code.values == StoredValues::kUint8 ? 8 : 16;
   const bool is_file = code.values == StoredValues::kFile;
   if (!is_file && code.values != StoredValues::kHalf)
-    LF_RETURN_IF_ERROR(CheckLevels(encoding, bits, name));
+    LF_RETURN_IF_ERROR(CheckLevels(encoding, BitsOf(code.values), name));
   const auto bytes = loading->reader.Read(code);
   if (!bytes) return named(bytes.error());
   const bool is_mosaic = encoding.bayer != BayerPattern::kNone;
-  const PixelLayout layout = is_mosaic ? PixelLayout::kMosaic : PixelLayout::kRgb;
   if (!is_file)
-    if (const auto ok = CheckCode(bytes->code, bits, layout, !is_mosaic, code.rect); !ok)
+    if (const auto ok = CheckColours(bytes->code, code, encoding.bayer); !ok)
       return named(ok.error());
   pixels->Reset(inside, encoding.bayer);
   if (inside.empty()) return {};
@@ -357,8 +337,10 @@ Result<void> PackedStore::LoadRecorded(Loading* loading, LfImageId id, const Pix
                                                                  id, inside, &loading->part));
     ConvertRadiance(loading->part, use.colours, tables_, encoding, camera, k, pixels);
   } else {
-    if (const auto ok = DecodeImage(bytes->code, wanted, &loading->decoded); !ok)
-      return named(ok.error());
+    const auto ok = references_ && references_->Concerns(code.id)
+                        ? references_->Decode(code.id, bytes->code, wanted, &loading->decoded)
+                        : DecodeImage(bytes->code, wanted, &loading->decoded);
+    if (!ok) return named(ok.error());
     Convert(loading, code.values, code.rect, encoding, camera, k, pixels);
   }
 

@@ -14,6 +14,7 @@
 #include "lf/storage/load/display_curve.h"
 #include "lf/storage/load/lf_image_store.h"
 #include "lf/storage/load/radiance_conversion.h"
+#include "lf/storage/load/reference_cache.h"
 #include "lf/storage/packed/packed_planes.h"
 #include "lf/storage/packed/packed_store_file.h"
 
@@ -23,8 +24,9 @@ namespace lf {
 // for files. After lossless encoding, both stores give the same bits, unless floats were rounded to
 // half floats. Takes 32 bytes of memory for each LF image of the light field, and opens the file as
 // many times as threads have loaded at the same time. While one image loads, its encoded bytes, its
-// stored values and the result are in memory together. Keeps a reference to `light_field`, which
-// must outlive the store.
+// stored values and the result are in memory together. If LF images are predicted, also the stored
+// values of their reference images are (reference_cache.h). Keeps a reference to `light_field`,
+// which must outlive the store.
 class PackedStore : public LfImageStore {
  public:
   // Opens the file light_field.folder. LF images are found in it by name, so that `light_field` may
@@ -38,13 +40,13 @@ class PackedStore : public LfImageStore {
 
   // Loads the pixels of `rect`, clipped to the image. kInput as LfImageStore says, naming store and
   // image: the image is not in the store, the pixels lie beyond those that were encoded, or the
-  // store is damaged.
+  // store is damaged. A message about a damaged reference image names both.
   Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override;
   // Reduces by the largest power of two that divides `divisor` and that the encoded image can be
   // reduced by, and reads and decodes only the front of the encoded image. A mosaic that is loaded
   // as RGB is reduced as well. Image files are reduced as FolderStore reduces them. Loads a whole
-  // LF image if it has masks or opacities, depths, floats or the profile kThesis, and if a store of
-  // an earlier build has no fronts.
+  // LF image if it has masks or opacities, depths, floats or the profile kThesis, if it is
+  // predicted, and if a store of an earlier build has no fronts.
   Result<int> LoadReduced(LfImageId id, int divisor, const Intrinsics& k,
                           LfPixels* pixels) const override;
   bool LoadsDepths() const override { return densified_.has_value(); }
@@ -57,6 +59,10 @@ class PackedStore : public LfImageStore {
     return codes_[id.value].bytes > 0 && codes_[id.value].missing_parts <= unneeded_parts_;
   }
   uint64_t StoredBytes(LfImageId id) const override { return codes_[id.value].bytes; }
+  uint64_t ReferenceBytes() const override { return references_ ? references_->AllBytes() : 0; }
+  void LimitReferences(uint64_t most_bytes) override {
+    if (references_) references_->Limit(most_bytes);
+  }
   // Returns the entry of the store's table for an LF image.
   const PackedCode& CodeOf(LfImageId id) const { return codes_[id.value]; }
 
@@ -92,7 +98,8 @@ class PackedStore : public LfImageStore {
   const std::vector<PackedCode> codes_;  // entry of each LF image, in the order of their ids
   int unneeded_parts_ = 0;               // number of the store's finest parts that are not needed
   std::optional<DisplayCurve> curve_;    // set if any LF image is encoded as kDisplay16
-  std::optional<DensifiedPlan> densified_;  // set if Load() loads depths and trust
+  std::optional<DensifiedPlan> densified_;      // set if Load() loads depths and trust
+  std::unique_ptr<ReferenceCache> references_;  // null if no LF image of the store is predicted
   mutable std::mutex mutex_;
   mutable std::vector<std::unique_ptr<Loading>> loadings_;  // buffers that no load uses now
 };

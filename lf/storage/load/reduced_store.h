@@ -33,6 +33,10 @@ class ReducedStore : public LfImageStore {
   bool IsThere(LfImageId id) const override { return recorded_store_->IsThere(id); }
   bool IsPartial() const override { return recorded_store_->IsPartial(); }
   bool Keeps(LfImageId id, const PixelRect& rect) const override;
+  uint64_t ReferenceBytes() const override { return recorded_store_->ReferenceBytes(); }
+  void LimitReferences(uint64_t most_bytes) override {
+    recorded_store_->LimitReferences(most_bytes);
+  }
   uint64_t StoredBytes(LfImageId id) const override { return recorded_store_->StoredBytes(id); }
   void Announce(LfImageId id) const override { recorded_store_->Announce(id); }
 
