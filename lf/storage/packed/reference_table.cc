@@ -37,11 +37,16 @@ std::optional<std::vector<uint32_t>> IdsOfText(std::string_view text) {
 template <class Row>
 Result<void> ForEachPredicted(const Settings& settings, size_t image_count, Database* database,
                               const Row& row) {
+  int64_t next =
+      0;  // smallest id that the next row may have; in a damaged file rows may not ascend
   return ForEachRow(
       *database, fmt::format("select id, reference_ids from {} order by id", kPredictedName),
       [&](const Statement& statement) -> Result<void> {
-        LF_ASSIGN_OR_RETURN(const int64_t id,
-                            statement.Integer(0, 0, static_cast<int64_t>(image_count) - 1));
+        LF_ASSIGN_OR_RETURN(const int64_t id, statement.Integer(0));
+        if (id < next || id >= static_cast<int64_t>(image_count))
+          return settings.Damaged(fmt::format(
+              "it has reference images of LF image {}, which it lacks or has twice", id));
+        next = id + 1;
         LF_ASSIGN_OR_RETURN(const std::string_view text, statement.Blob(1));
         std::optional<std::vector<uint32_t>> references = IdsOfText(text);
         if (!references)
