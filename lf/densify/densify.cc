@@ -133,7 +133,8 @@ class Densifier {
   std::optional<KeptFindings> findings_;
   std::unique_ptr<DepthPlanes> depths_;
 
-  std::mutex mutex_;  // guards all members below
+  std::mutex adding_;  // held while a predicted LF image is added with its reference images
+  std::mutex mutex_;   // guards all members below
   DensifyReport report_;
   std::vector<std::unique_ptr<SynthesisMemory>> spare_;  // memory that no thread uses
   StoredKind kind_;  // kind that holds the values of all recorded LF images
@@ -401,11 +402,18 @@ Result<void> Densifier::AddRecorded(LfImageId id) {
     Hold(kind);
     return {};
   }
-  LF_ASSIGN_OR_RETURN(const CodedImage image,
-                      recorded_->Of(id, [this] { return IsSet(options_.interrupted); }));
-  LF_ASSIGN_OR_RETURN(const StoredKind kind, KindOfCode(image, light_field_.encoding));
-  Hold(kind);
-  return writer_->Add(id, image);
+  // Another thread must not add an LF image while its reference images are added.
+  std::unique_lock<std::mutex> lock;
+  if (recorded_->ArePredicted()) lock = std::unique_lock(adding_);
+  for (const LfImageId needed : recorded_->NeededBy(id)) {
+    if (writer_->Has(needed)) continue;
+    LF_ASSIGN_OR_RETURN(const CodedImage image,
+                        recorded_->Of(needed, [this] { return IsSet(options_.interrupted); }));
+    LF_ASSIGN_OR_RETURN(const StoredKind kind, KindOfCode(image, light_field_.encoding));
+    Hold(kind);
+    LF_RETURN_IF_ERROR(writer_->Add(needed, image));
+  }
+  return {};
 }
 
 std::unique_ptr<SynthesisMemory> Densifier::TakeMemory() {

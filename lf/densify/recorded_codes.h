@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "lf/core/ids.h"
 #include "lf/core/result.h"
@@ -33,7 +34,15 @@ class RecordedCodes {
   // is_interrupted() returned true; it may be empty.
   Result<CodedImage> Of(LfImageId id, const std::function<bool()>& is_interrupted = {}) const;
 
-  // Sets PackedStorePlan::codec and display_levels.
+  // Returns true if LF images that are copied are predicted from others, which must be added first.
+  bool ArePredicted() const { return copied_ && copied_->ArePredicted(); }
+  // Returns all LF images to add for this one, each after its reference images. The last one is
+  // `id` itself.
+  std::vector<LfImageId> NeededBy(LfImageId id) const {
+    return ArePredicted() ? copied_->NeededBy(id) : std::vector<LfImageId>{id};
+  }
+
+  // Sets PackedStorePlan::codec, display_levels and is_predicted.
   void Describe(PackedStorePlan* plan) const;
 
   // Returns the kind of the stored values of an LF image before it is encoded. kInput: the LF image

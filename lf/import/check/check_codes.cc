@@ -39,8 +39,11 @@ Result<std::unique_ptr<CodeChecker>> CodeChecker::Open(const LightField& light_f
   LF_ASSIGN_OR_RETURN(std::vector<PackedCode> codes, FindCodes(light_field.folder, light_field));
   LF_ASSIGN_OR_RETURN(const PackedStoreFacts facts, ReadPackedStore(light_field.folder));
   const auto missing_parts = static_cast<int>(facts.part_count - facts.found_parts);
-  return std::unique_ptr<CodeChecker>(
+  std::unique_ptr<CodeChecker> checker(
       new CodeChecker(light_field, std::move(codes), missing_parts));
+  LF_ASSIGN_OR_RETURN(checker->references_,
+                      ReferenceCache::Open(light_field.folder, light_field.encoding.bayer));
+  return checker;
 }
 
 CodeChecker::Fault CodeChecker::Check(LfImageId id, bool decode) const {
@@ -66,6 +69,17 @@ CodeChecker::Fault CodeChecker::Check(LfImageId id, bool decode) const {
   return {false, decoded ? "" : decoded.error().message};
 }
 
+Result<void> CodeChecker::DecodeColours(const PackedCode& code, std::string_view bytes,
+                                        const std::string& name) const {
+  if (code.values == StoredValues::kFile) return DecodeFile(bytes, name);
+  if (!references_ || !references_->Concerns(code.id)) return DecodeAll(bytes, name);
+  DecodedPart part;
+  const PixelRect whole = {0, 0, code.rect.width(), code.rect.height()};
+  if (const Result<void> decoded = references_->Decode(code.id, bytes, whole, &part); !decoded)
+    return Named(decoded.error(), name);
+  return {};
+}
+
 Result<void> CodeChecker::Decode(LfImageId id, const std::string& name) const {
   std::optional<PackedCodeReader> reader;
   {
@@ -78,7 +92,6 @@ Result<void> CodeChecker::Decode(LfImageId id, const std::string& name) const {
   if (!reader) {
     LF_ASSIGN_OR_RETURN(reader, PackedCodeReader::Open(light_field_.folder));
   }
-  const bool is_file = codes_[id.value].values == StoredValues::kFile;
   Result<void> result;
   const PackedCode& code = codes_[id.value];
   if (code.missing_parts > 0) {
@@ -88,7 +101,7 @@ Result<void> CodeChecker::Decode(LfImageId id, const std::string& name) const {
   } else if (const auto bytes = reader->Read(code); !bytes) {
     result = Named(bytes.error(), name);
   } else {
-    result = is_file ? DecodeFile(bytes->code, name) : DecodeAll(bytes->code, name);
+    result = DecodeColours(code, bytes->code, name);
     if (result && !bytes->mask.empty()) result = DecodeAll(bytes->mask, name);
   }
   const std::lock_guard lock(mutex_);

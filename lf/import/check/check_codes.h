@@ -5,11 +5,13 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lf/core/ids.h"
 #include "lf/core/result.h"
 #include "lf/light_field/model/light_field.h"
+#include "lf/storage/load/reference_cache.h"
 #include "lf/storage/packed/packed_store_file.h"
 
 namespace lf {
@@ -33,12 +35,15 @@ class CodeChecker {
 
  private:
   CodeChecker(const LightField& light_field, std::vector<PackedCode> codes, int missing_parts);
-  // The message of an error begins with `name`.
+  // The messages of errors begin with `name`.
   Result<void> Decode(LfImageId id, const std::string& name) const;
+  Result<void> DecodeColours(const PackedCode& code, std::string_view bytes,
+                             const std::string& name) const;
 
   const LightField& light_field_;
   const std::vector<PackedCode> codes_;
-  const int missing_parts_;  // number of files that a store by resolution lacks
+  const int missing_parts_;                     // number of files that a store by resolution lacks
+  std::unique_ptr<ReferenceCache> references_;  // null if no LF image is predicted
   mutable std::mutex mutex_;
   mutable std::vector<PackedCodeReader> readers_;  // open readers that no call uses now
 };

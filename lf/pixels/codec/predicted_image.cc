@@ -75,7 +75,8 @@ void PredictPixels(Transform transform, const PredictionPlan& plan,
 }
 
 Error WrongReferences(const std::string& fault) {
-  return InputError("is an encoded LF image whose prediction " + fault);
+  return InputError(fmt::format(
+      "is an encoded LF image whose prediction {}; copy or make the packed store again", fault));
 }
 
 // Returns for each reference image the pixels that predict the pixels `rect` of the image.

@@ -9,10 +9,10 @@
 #include <thread>
 #include <vector>
 
+#include "lf/core/file.h"
 #include "lf/pixels/files/test_folder.h"
 #include "lf/storage/load/packed_store.h"
 #include "lf/storage/load/test_predicted_store.h"
-#include "lf/storage/packed/packed_format.h"
 
 namespace lf {
 namespace {
@@ -41,12 +41,6 @@ class ReferenceCacheTest : public FolderTest {
     ASSERT_TRUE(decoded) << decoded.error().message;
     ASSERT_TRUE(HasPixelsOf(images_.decoded[id], part, Intersection(rect, Whole()))) << id;
   }
-  // Replaces the encoded image of an LF image in the store.
-  void Damage(const std::string& sql) const {
-    Database database = Database::OpenToAppend(path_, kStoreFormat).value();
-    ASSERT_TRUE(database.Execute(sql));
-  }
-
   std::filesystem::path path_;
   PredictedImages images_;
   LightField light_field_;
@@ -208,37 +202,45 @@ TEST_F(ReferenceCacheTest, AnotherLightFieldFindsItsImages) {
 
 // Damage of one LF image breaks those that need it, and no others.
 TEST_F(ReferenceCacheTest, DamagedReferencesAreNamed) {
-  Write({});
-  const std::string other =
-      "update blobs set code = (select code from blobs where id = 2) where "
-      "id = 4";
-  const std::string half = "update blobs set code = substr(code, 1, 100) where id = 4";
-  const std::string none = "delete from blobs where id = 4";
-  for (const std::string& sql : {other, half, none}) {
-    std::filesystem::remove(path_);
-    Write({});
-    Damage(sql);
-    const auto store = PackedStore::Open(light_field_, Mosaics::kAsRecorded).value();
-    for (const uint32_t id : {0, 1, 2, 3, 4, 5, 6}) {
-      LfPixels pixels;
-      const Result<void> loaded = store->Load({id}, Whole(), &pixels);
-      ASSERT_EQ(loaded.has_value(), id != 1 && id != 4 && id != 6) << id << sql;
-      if (loaded) continue;
-      EXPECT_EQ(loaded.error().kind, ErrorKind::kInput);
-      const std::string& message = loaded.error().message;
-      EXPECT_NE(message.find("a.lfs/image" + std::to_string(id) + ".png: "), std::string::npos);
-      EXPECT_EQ(message.find("without the reference image image4.png: ") != std::string::npos,
-                id != 4)
-          << message;
-      EXPECT_NE(message.find("copy or make"), std::string::npos) << message;
+  const PredictedImages good = MakePredictedImages({});
+  const std::string& code = good.coded[4].code;
+  for (const bool is_on_disk : {true, false})
+    for (const std::string& bad : {good.coded[2].code, code.substr(0, code.size() / 2)}) {
+      images_ = good;
+      if (!is_on_disk) images_.coded[4].code = bad;
+      std::filesystem::remove(path_);
+      images_.Write(path_);
+      if (is_on_disk) {
+        std::string file = *ReadFile(path_);
+        const size_t at = file.find(code.substr(0, 200));
+        ASSERT_NE(at, std::string::npos);
+        file[at + 150] ^= 4;
+        ASSERT_TRUE(WriteFileAtomically(path_, file));
+      }
+      light_field_ = ReadPackedStore(path_).value().light_field;
+      const auto store = PackedStore::Open(light_field_, Mosaics::kAsRecorded).value();
+      for (const uint32_t id : {0, 1, 2, 3, 4, 5, 6}) {
+        LfPixels pixels;
+        const Result<void> loaded = store->Load({id}, Whole(), &pixels);
+        ASSERT_EQ(loaded.has_value(), id != 1 && id != 4 && id != 6) << id;
+        if (loaded) continue;
+        EXPECT_EQ(loaded.error().kind, ErrorKind::kInput);
+        const std::string& message = loaded.error().message;
+        EXPECT_NE(message.find("a.lfs/image" + std::to_string(id) + ".png: "), std::string::npos);
+        EXPECT_EQ(message.find("without the reference image image4.png: ") != std::string::npos,
+                  id != 4)
+            << message;
+        EXPECT_NE(message.find("copy or make"), std::string::npos) << message;
+      }
     }
-  }
 }
 
 // The head of a reference image is checked before its pixels are decoded.
 TEST_F(ReferenceCacheTest, AReferenceOfAnotherSizeIsDamaged) {
-  Write({});
-  Damage("update codes set x_end = 60 where id = 3");
+  images_ = MakePredictedImages({});
+  images_.coded[3].rect.x_end = 60;
+  images_.Write(path_);
+  light_field_ = ReadPackedStore(path_).value().light_field;
   const auto store = PackedStore::Open(light_field_, Mosaics::kAsRecorded).value();
   LfPixels pixels;
   const Result<void> loaded = store->Load({0}, Whole(), &pixels);
