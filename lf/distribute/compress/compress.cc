@@ -113,7 +113,7 @@ class Compressor {
     bool is_rounded = false;
   };
   Result<Coded> Encode(LfImageId id) const;
-  Result<Coded> Copy(LfImageId id) const;
+  Result<Coded> Copy(const PackedStoreWriter& writer, LfImageId id) const;
   void Count(LfImageId id, const Coded& coded);
   void AddOne(PackedStoreWriter* writer, LfImageId id);
   VerifyOptions Verification() const;
@@ -154,7 +154,7 @@ void Compressor::AddOne(PackedStoreWriter* writer, LfImageId id) {
   }
   const ThreadCpuTimer timer;
   const std::string& name = source_.light_field.image_names[id.value];
-  const Result<Coded> coded = copied_ ? Copy(id) : Encode(id);
+  const Result<Coded> coded = copied_ ? Copy(*writer, id) : Encode(id);
   std::optional<Error> error;
   if (!coded)
     error = coded.error();
@@ -197,9 +197,15 @@ Result<Compressor::Coded> Compressor::Encode(LfImageId id) const {
   return coded;
 }
 
-Result<Compressor::Coded> Compressor::Copy(LfImageId id) const {
+Result<Compressor::Coded> Compressor::Copy(const PackedStoreWriter& writer, LfImageId id) const {
   Coded coded;
   LF_ASSIGN_OR_RETURN(coded.image, copied_->Of(id));
+  for (const LfImageId reference : coded.image.references)
+    if (!writer.Has(reference))
+      return InputError(fmt::format(
+          "{}: is predicted from {}, which cannot be copied: make the packed store again",
+          source_.light_field.ImagePath(id).string(),
+          source_.light_field.image_names[reference.value]));
   return coded;
 }
 
@@ -225,6 +231,17 @@ void Compressor::Count(LfImageId id, const Coded& coded) {
 
 // Returns the LF images to compress in the order in which they are added to the store.
 std::vector<LfImageId> Compressor::Ordered() const {
+  if (copied_ && copied_->ArePredicted()) {
+    std::vector<LfImageId> ordered;
+    std::vector<bool> is_listed(source_.rects.size());
+    for (const LfImageId id : ids_)
+      for (const LfImageId needed : copied_->NeededBy(id)) {
+        if (is_listed[needed.value]) continue;
+        is_listed[needed.value] = true;
+        ordered.push_back(needed);
+      }
+    return ordered;
+  }
   if (!options_.by_resolution) return ids_;
   std::vector<LfImageId> ordered;
   for (const uint32_t id : SpreadOrder(source_.light_field, /*seed=*/0))
@@ -267,7 +284,11 @@ Result<void> Compressor::Write(FileLock lock) {
   LogDebug("{}: {} LF images to be encoded, {} are encoded; codec {}; {} threads",
            options_.store.string(), ids.size(), report_.resumed_count, plan_.codec,
            pool_.thread_count());
-  pool_.ForEach(ids.size(), [&](size_t i) { AddOne(&writer, ids[i]); });
+  if (copied_ && copied_->ArePredicted())
+    // Copying is as fast in one thread, and adds reference images before those that need them.
+    for (const LfImageId id : ids) AddOne(&writer, id);
+  else
+    pool_.ForEach(ids.size(), [&](size_t i) { AddOne(&writer, ids[i]); });
   std::sort(report_.skipped.begin(), report_.skipped.end(),
             [](const auto& a, const auto& b) { return a.name < b.name; });
   if (error_) {
@@ -367,6 +388,12 @@ Result<CompressReport> Compressor::Run() {
   LF_CHECK(!options_.by_resolution || options_.shard_bytes == 0);
   if (source_.IsCopied()) {
     LF_ASSIGN_OR_RETURN(copied_, CopiedCodes::Open(source_.light_field));
+    if (options_.by_resolution && copied_->ArePredicted())
+      return UsageError(fmt::format(
+          "{}: has LF images that are predicted from others, which have no smaller pictures and "
+          "cannot be divided by resolution: leave out {{by_resolution}}, or compress the light "
+          "field that the store was made from",
+          source_.light_field.folder.string()));
   }
   report_.image_count = ids_.size();
   report_.left_out_count = source_.light_field.size() - ids_.size();

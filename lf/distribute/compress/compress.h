@@ -109,7 +109,8 @@ std::string NameOf(const CodecSettings& settings, KeepFiles files,
 // copies their encoded images, with the settings of that store in place of options.codec and files.
 // kUsage: wrong settings, the store exists
 // and no option says what to do with it, its name belongs to another file or is that of the store
-// that is copied, or no threshold reaches target_psnr_db. kInput: no LF image can be read, or
+// that is copied, it has predicted LF images and by_resolution is true, or no threshold reaches
+// target_psnr_db. kInput: no LF image can be read, or
 // `strict` is true and one cannot be read; the files are not those that an unfinished store was
 // made from; or the store differs from the result of encoding its LF images (`verify`). kOutput:
 // the disk or the memory fails. kInterrupted: finished work is kept.

@@ -11,6 +11,7 @@
 #include "lf/storage/load/measure_footprint.h"
 #include "lf/storage/load/open_store.h"
 #include "lf/storage/packed/packed_store_file.h"
+#include "lf/storage/packed/reference_table.h"
 
 namespace lf {
 namespace {
@@ -18,6 +19,15 @@ namespace {
 PixelRect WholeImage(const LightField& light_field, size_t i) {
   const Intrinsics& k = light_field.intrinsics[light_field.cameras[i].intrinsics_index];
   return {0, 0, k.width_px, k.height_px};
+}
+
+// Adds the LF images from which others of the packed store are predicted, directly or through
+// others.
+void AddReferences(const ReferenceTable& references, CompressSource* source) {
+  if (references.empty()) return;
+  for (const LfImageId id : source->CompressedIds())
+    for (const uint32_t needed : references.NeededBy(id.value))
+      source->rects[needed] = WholeImage(source->light_field, needed);
 }
 
 // Sets identity and numbers of the LF images of a packed store, and removes the rectangles of those
@@ -42,6 +52,8 @@ Result<void> DescribeStore(CompressSource* source) {
                       "the light field that it was made from",
                       name));
   }
+  LF_ASSIGN_OR_RETURN(const ReferenceTable references, ReadReferences(light_field.folder));
+  AddReferences(references, source);
   source->whole = facts.whole;
   source->whole_ids = std::move(facts.whole_ids);
   source->films = std::move(facts.films);

@@ -43,7 +43,8 @@ struct CompressSource {
 // kOutput as MeasureFootprint(), which is called if the calibration does not state the footprint.
 Result<CompressSource> SourceOfAll(LightField light_field);
 
-// Returns the LF images from which frames of the packages take rays, and leaves out all others.
+// Returns the LF images from which frames of the packages take rays, and leaves out all others. If
+// the light field is a packed store, those from which they are predicted are not left out.
 //   light_field    the light field that the packages were made from
 //   needed_pixels  true: of each LF image, only the bounds of the pixels that these frames need;
 //                  false: all pixels

@@ -7,15 +7,30 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "lf/distribute/compress/compress.h"
 #include "lf/distribute/compress/image_coder.h"
 #include "lf/storage/load/recorded_image.h"
+#include "lf/storage/load/reference_cache.h"
 #include "lf/storage/packed/packed_store_file.h"
 
 namespace lf {
 namespace fs = std::filesystem;
+
+namespace {
+
+// Returns true if the store has these reference images of an LF image.
+bool HasReferences(const ReferenceCache* cache, uint32_t id,
+                   const std::vector<LfImageId>& references) {
+  if (cache == nullptr) return references.empty();
+  const std::span<const uint32_t> found = cache->references().Of(id);
+  return std::equal(found.begin(), found.end(), references.begin(), references.end(),
+                    [](uint32_t a, LfImageId b) { return a == b.value; });
+}
+
+}  // namespace
 
 Result<void> CheckStoreFacts(const CompressSource& source, const VerifyOptions& options) {
   LF_ASSIGN_OR_RETURN(const PackedStoreFacts facts, ReadPackedStore(options.store));
@@ -37,6 +52,8 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
   const LightField& light_field = source.light_field;
   LF_ASSIGN_OR_RETURN(const std::vector<PackedCode> codes, FindCodes(options.store, light_field));
 
+  LF_ASSIGN_OR_RETURN(const std::unique_ptr<ReferenceCache> references,
+                      ReferenceCache::Open(options.store, light_field.encoding.bayer));
   const ImageCoder coder(light_field.encoding, options.settings, options.files,
                          options.is_interrupted);
   std::mutex mutex;
@@ -82,10 +99,13 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
     LF_RETURN_IF_ERROR(bytes);
     if (code.values != StoredValues::kFile) {
       DecodedPart decoded;
-      LF_RETURN_IF_ERROR(DecodeImage(bytes->code, &decoded));
+      const PixelRect whole = {0, 0, code.rect.width(), code.rect.height()};
+      LF_RETURN_IF_ERROR(references && references->Concerns(code.id)
+                             ? references->Decode(code.id, bytes->code, whole, &decoded)
+                             : DecodeImage(bytes->code, &decoded));
     }
     if (code.rect != again.rect || code.values != again.values || bytes->code != again.code ||
-        bytes->mask != again.mask)
+        bytes->mask != again.mask || !HasReferences(references.get(), code.id, again.references))
       return InputError(
           "the encoded image in the store differs from its source; make the store again with "
           "{overwrite}");
