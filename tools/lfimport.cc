@@ -32,6 +32,7 @@
 #include "lf/storage/load/measure_footprint.h"
 #include "lf/storage/load/open_store.h"
 #include "lf/storage/packed/packed_store_file.h"
+#include "lf/storage/packed/reference_table.h"
 
 namespace {
 
@@ -402,6 +403,9 @@ lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
   lf::ThreadPool pool(common.threads);
   if (lf::HoldsPackedStore(light_field)) {
     LF_ASSIGN_OR_RETURN(report.films, lf::ReadStoreFilms(light_field.folder));
+    LF_ASSIGN_OR_RETURN(const lf::ReferenceTable references,
+                        lf::ReadReferences(light_field.folder));
+    report.predicted_count = references.predicted_count();
   }
   if (a.check != "none") {
     LF_ASSIGN_OR_RETURN(report.faults, CheckFiles(a, common, light_field, interrupted, pool));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests copies of packed stores of predicted LF images.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -11,7 +12,6 @@
 #include "lf/core/file.h"
 #include "lf/core/parallel.h"
 #include "lf/distribute/compress/compress.h"
-#include "lf/pixels/files/test_folder.h"
 #include "lf/storage/load/packed_store.h"
 #include "lf/storage/load/test_predicted_store.h"
 #include "lf/storage/packed/reference_table.h"
@@ -19,15 +19,20 @@
 namespace lf {
 namespace {
 
-class CopyPredictedTest : public FolderTest {
+class CopyPredictedTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    FolderTest::SetUp();
+  CopyPredictedTest()
+      : folder_(std::filesystem::temp_directory_path() /
+                ("lf_copy_predicted_test." + std::to_string(::getpid()) + "." +
+                 ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
+    std::filesystem::create_directories(folder_);
     from_ = folder_ / "from.lfs";
     options_.store = folder_ / "to.lfs";
     options_.verify = true;
     images_ = MakePredictedImages({.has_masks = true});
   }
+  ~CopyPredictedTest() override { std::filesystem::remove_all(folder_); }
+
   void Write() {
     images_.Write(from_);
     field_ = ReadPackedStore(from_).value().light_field;
@@ -73,6 +78,7 @@ class CopyPredictedTest : public FolderTest {
     return SourceOfPackages(field_, std::vector<Package>{package}, needed_pixels);
   }
 
+  const std::filesystem::path folder_;
   std::filesystem::path from_;
   CompressOptions options_;
   PredictedImages images_;

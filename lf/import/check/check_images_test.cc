@@ -8,6 +8,7 @@
 #include "lf/core/file.h"
 #include "lf/pixels/files/image_file.h"
 #include "lf/pixels/files/test_folder.h"
+#include "lf/storage/load/test_predicted_store.h"
 
 namespace lf {
 namespace {
@@ -73,6 +74,30 @@ TEST_F(CheckImagesTest, OnlyThePixelsShowATruncatedFile) {
   const ImageFaults faults = Check(ImageCheck::kPixels);
   ASSERT_EQ(faults.broken.size(), 1u);
   EXPECT_EQ(faults.broken[0].id.value, 1u);
+}
+
+// Predicted LF images are decoded with their reference images. One that is damaged breaks others.
+TEST_F(CheckImagesTest, PredictedImagesAreDecoded) {
+  PredictedImages images = MakePredictedImages({});
+  const std::filesystem::path path = folder_ / "a.lfs";
+  images.Write(path);
+  field_ = ReadPackedStore(path)->light_field;
+  ImageFaults faults = Check(ImageCheck::kPixels);
+  EXPECT_TRUE(faults.missing.empty() && faults.broken.empty());
+
+  images.coded[4].code.resize(images.coded[4].code.size() / 2);
+  std::filesystem::remove(path);
+  images.Write(path);
+  EXPECT_TRUE(Check(ImageCheck::kHeaders).broken.empty());
+  faults = Check(ImageCheck::kPixels);
+  ASSERT_EQ(faults.broken.size(), 3u);
+  EXPECT_EQ(faults.broken[0].id.value, 1u);
+  EXPECT_NE(faults.broken[0].reason.find("a.lfs/image1.png: cannot be decoded without the "
+                                         "reference image image4.png: "),
+            std::string::npos)
+      << faults.broken[0].reason;
+  EXPECT_EQ(faults.broken[1].id.value, 4u);
+  EXPECT_EQ(faults.broken[2].id.value, 6u);
 }
 
 TEST_F(CheckImagesTest, ManyImagesAreCountedToTheEnd) {

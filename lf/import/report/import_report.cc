@@ -84,6 +84,8 @@ std::string ImagesText(const ImportReport& report) {
   std::string text = fmt::format("{}", report.capture.image_count);
   if (report.capture.virtual_count > 0)
     text += fmt::format(" recorded, {} virtual", report.capture.virtual_count);
+  if (report.predicted_count > 0)
+    text += fmt::format(", {} predicted from others", report.predicted_count);
   if (report.capture.mask_count > 0) text += fmt::format(", {} masks", report.capture.mask_count);
   if (report.excluded_count > 0) text += fmt::format(", {} left out", report.excluded_count);
   if (!report.faults) return text + ", not checked";
@@ -293,6 +295,7 @@ std::string ReportJson(const ImportReport& report) {
     json["broken"] = report.faults->broken.size();
     if (report.faults->left_out_count > 0) json["not_stored"] = report.faults->left_out_count;
   }
+  if (report.predicted_count > 0) json["predicted"] = report.predicted_count;
   if (report.video) json["video"] = VideoJson(report);
   if (report.films)
     json["encoded_for"] = {{"packages", report.films->source},

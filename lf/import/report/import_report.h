@@ -38,7 +38,9 @@ struct ImportReport {
   std::optional<VideoFacts> video;
   std::vector<double> shown_times;
   std::optional<StoreFilms> films;  // nullopt unless a packed store was encoded for certain films
-  size_t excluded_count = 0;        // number of LF images that were left out on purpose
+  size_t predicted_count =
+      0;  // number of LF images of a packed store that are predicted from others
+  size_t excluded_count = 0;  // number of LF images that were left out on purpose
   // nullopt: the files were not checked, or faults of the files forbid that anything is written
   std::optional<FootprintFacts> pixels;
   std::optional<Agreement> agreement;       // nullopt as `pixels`

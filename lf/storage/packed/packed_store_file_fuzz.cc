@@ -13,6 +13,7 @@
 
 #include "lf/core/check.h"
 #include "lf/storage/packed/packed_store_file.h"
+#include "lf/storage/packed/reference_table.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size_bytes) {
   static const std::filesystem::path path =
@@ -26,6 +27,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size_bytes) {
     LF_CHECK(field.size() > 0 && facts->whole_ids.size() == field.size());
     LF_CHECK(facts->densified || !lf::HasVirtual(field));
     LF_CHECK(facts->left_out_count <= field.size());
+    LF_CHECK(facts->predicted_count <= field.size());
     for (const lf::LfCamera& camera : field.cameras) {
       LF_CHECK(camera.intrinsics_index < field.intrinsics.size());
       LF_CHECK(camera.cam_from_world.translation.allFinite());
@@ -34,6 +36,16 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size_bytes) {
     // The message names the store or one of its shards.
     LF_CHECK(facts.error().message.starts_with(path.parent_path().string()));
   }
+  // Searching for reference images ends soon, whatever the file says.
+  const auto references = lf::ReadReferences(path);
+  LF_CHECK(!facts || references);
+  if (references)
+    for (uint32_t id = 0; id < 100; ++id) {
+      const std::vector<uint32_t> needed = references->NeededBy(id);
+      LF_CHECK(needed.size() <= lf::kMostNeededImages + 1 && needed.back() == id);
+      LF_CHECK(references->Of(id).size() <= lf::kMostReferenceIds);
+      LF_CHECK(!facts || id < facts->light_field.size() || needed.size() == 1);
+    }
   // Searches for names also in a file that is not a valid store.
   const std::vector<std::string> names = {"i0.png", "i1.png", "i2.png"};
   const auto codes = lf::FindCodes(path, facts ? facts->light_field.image_names : names);
