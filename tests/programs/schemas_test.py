@@ -277,6 +277,8 @@ class SchemasTest(ProgramTestCase):
         self.prints("import_report", "lfimport", self.broken_field(), code=6)
         self.prints("import_report", "lfimport", self.densified)
         self.prints("import_report", "lfimport", self.store_of_packages())
+        predicted = SOURCE / "fuzz/corpus/packed_store_file/predicted.lfs"
+        self.prints("import_report", "lfimport", predicted, "--check", "none")
         alpha = {"lf_alpha": "straight", "lf_depth_range": [0.3, 2]}
         for background in "none", [0, 0.5, 1]:
             field = small_field.write_field(self.folder / "alpha", lambda index: np.full((48, 64, 4), index, np.uint8),
