@@ -228,6 +228,7 @@ Result<ReferenceCache::Part> ReferenceCache::Obtain(const Step& step, const Step
   LF_RETURN_IF_ERROR(DecodeStep(step, steps, decoded.get()));
   lock.lock();
   ++decoded_count_;
+  used_[step.id] = decoded;
   announced.pending->part = decoded;
   Keep(step.id, decoded);
   return Part(std::move(decoded));
@@ -261,18 +262,25 @@ Error ReferenceCache::OfReference(uint32_t id, const Error& error) const {
                       name ? *name : fmt::format("{} of the store", id), error.message)};
 }
 
-// Returns the kept pixels of an LF image if they contain `wanted`, otherwise null.
+// Returns the pixels of an LF image that are kept, or that a call uses now, if they contain
+// `wanted`, otherwise null.
 ReferenceCache::Part ReferenceCache::Find(uint32_t id, const PixelRect& wanted) {
-  const auto found = kept_of_.find(id);
-  if (found == kept_of_.end() || !Covers(found->second->part->rect, wanted)) return nullptr;
-  kept_.splice(kept_.begin(), kept_, found->second);
-  return found->second->part;
+  if (const auto kept = kept_of_.find(id);
+      kept != kept_of_.end() && Covers(kept->second->part->rect, wanted)) {
+    kept_.splice(kept_.begin(), kept_, kept->second);
+    return kept->second->part;
+  }
+  const auto used = used_.find(id);
+  if (used == used_.end()) return nullptr;
+  Part part = used->second.lock();
+  if (!part) used_.erase(used);
+  return part && Covers(part->rect, wanted) ? part : nullptr;
 }
 
 // Keeps decoded pixels in place of those of the same LF image, unless these contain them.
 void ReferenceCache::Keep(uint32_t id, const Part& part) {
-  if (Find(id, part->rect)) return;
   if (const auto old = kept_of_.find(id); old != kept_of_.end()) {
+    if (Covers(old->second->part->rect, part->rect)) return;
     kept_bytes_ -= PixelBytes(*old->second->part);
     kept_.erase(old->second);
     kept_of_.erase(old);

@@ -119,6 +119,9 @@ class ReferenceCache {
   std::unordered_map<uint32_t, std::shared_ptr<Pending>> pending_;
   std::list<Kept> kept_;  // the most recently used first
   std::unordered_map<uint32_t, std::list<Kept>::iterator> kept_of_;
+  // Pixels that some call uses now, or that are kept. Others may use them also if they are not
+  // kept.
+  std::unordered_map<uint32_t, std::weak_ptr<const DecodedPart>> used_;
   uint64_t kept_bytes_ = 0;
   uint64_t decoded_count_ = 0;
   uint64_t most_bytes_ = kMostBytes;

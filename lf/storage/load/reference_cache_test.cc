@@ -235,6 +235,35 @@ TEST_F(ReferenceCacheTest, DamagedReferencesAreNamed) {
     }
 }
 
+// Stores with intact checksums and any encoded images give pixels or errors.
+TEST_F(ReferenceCacheTest, AnyEncodedImagesAreDecodedOrRefused) {
+  std::mt19937 random(3);
+  const PredictedImages good = MakePredictedImages({PixelLayout::kMosaic});
+  size_t errors = 0;
+  for (int round = 0; round < 40; ++round) {
+    images_ = good;
+    for (CodedImage& coded : images_.coded)
+      if (random() % 2 == 0) {
+        const size_t most = round % 2 == 0 ? coded.code.size() : 60;  // mostly in the head
+        coded.code[random() % most] ^= static_cast<char>(1 << random() % 8);
+      }
+    if (round % 3 == 0) std::swap(images_.coded[1].code, images_.coded[4].code);
+    std::filesystem::remove(path_);
+    images_.Write(path_);
+    const std::unique_ptr<ReferenceCache> cache = Opened();
+    cache->Limit(random() % 20000);
+    for (uint32_t id = 0; id < kPredictedImages; ++id) {
+      const auto whole = cache->Whole(id);
+      errors += whole ? 0 : 1;
+      if (whole)
+        EXPECT_EQ((*whole)->rect, Whole());
+      else
+        EXPECT_FALSE(whole.error().message.empty());
+    }
+  }
+  EXPECT_GT(errors, 40u);
+}
+
 // The head of a reference image is checked before its pixels are decoded.
 TEST_F(ReferenceCacheTest, AReferenceOfAnotherSizeIsDamaged) {
   images_ = MakePredictedImages({});
