@@ -14,7 +14,7 @@ namespace {
 
 constexpr size_t kUsual = 16;      // size of a group that cuts aim at
 constexpr double kUnit = 1 << 28;  // the longest extent of positions, and a direction's length
-constexpr int64_t kFarthest = 3;   // times the distance of the nearest reference image
+constexpr int64_t kFarthestSquare = 10;  // times that of the distance of the nearest reference
 constexpr double kMostAngle = 0.0303844939755838;  // 2 - 2 cos(10 degrees): square of a chord
 
 using Place = std::array<int32_t, 3>;
@@ -150,9 +150,10 @@ class GroupOrder {
       int64_t square = INT64_MAX;
       uint8_t rank = 0;
     };
-    std::array<Reference, GroupMember::kMostReferences> nearest;  // by direction
+    std::array<Reference, 4> nearest;  // by direction
     const Place& at = items[item].at;
-    for (size_t rank = 0; rank < order_.size(); ++rank) {
+    const size_t anchors = std::min(order_.size(), AnchorCount(items.size()));
+    for (size_t rank = 0; rank < anchors; ++rank) {
       const Place& other = items[order_[rank]].at;
       const int64_t square = SquareBetween(at, other);
       Reference& best = nearest[DirectionTo(at, other)];
@@ -163,7 +164,8 @@ class GroupOrder {
     });
     GroupMember member{LfImageId{ids[items[item].rank]}, 0, {}};
     for (const Reference& reference : nearest)
-      if (reference.square <= SquareOf(kFarthest) * nearest[0].square)
+      if (member.reference_count < GroupMember::kMostReferences &&
+          reference.square <= kFarthestSquare * nearest[0].square)
         member.references[member.reference_count++] = reference.rank;
     return member;
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Groups of neighbouring LF cameras for predictive coding (thesis 6.2): the first image of a group,
 // its key image, is encoded by itself. Each other one is predicted from reference images, which are
-// up to four images of its group that are decoded before it. No image depends on another group.
+// up to three anchors of its group that are decoded before it. No image depends on another group.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ struct CameraToGroup {
 
 // An LF image of a group.
 struct GroupMember {
-  static constexpr size_t kMostReferences = 4;
+  static constexpr size_t kMostReferences = 3;
   LfImageId id;  // index of its CameraToGroup
   uint8_t reference_count = 0;
   // Ranks in the group of its reference images, the nearest first. All are less than its own rank.
@@ -34,6 +34,9 @@ struct GroupMember {
     return std::span(references).first(reference_count);
   }
 };
+
+// Returns the number of anchors of a group: 6 of 16.
+constexpr size_t AnchorCount(size_t group_size) { return (3 * group_size + 7) / 8; }
 
 struct ReferenceGroups {
   static constexpr size_t kLeast = 8, kMost = 23;  // sizes of groups where LF cameras are dense
@@ -51,12 +54,16 @@ struct ReferenceGroups {
 // apart. A group has from kLeast to kMost members, and fewer only if the directions of LF cameras
 // that are neighbours differ by degrees. Successive groups are mostly neighbours.
 //
+// The first images of a group, AnchorCount() of them, are its anchors: the others are predicted
+// from these alone, and no image from the others.
+//
 // LF cameras of each kind are cut in two, again and again: across the longest extent of their
 // directions until these are near enough to each other, then across that of their positions. Cuts
 // are between rows or columns of a grid. The order within a group begins with the LF camera in the
 // middle, followed by the one farthest from all before it, and so on. The references of an LF image
-// are the nearest one before it in each of the directions right, up, left and down in the group's
-// plane of least variance, without those more than three times as far away as the nearest.
+// are the nearest anchor before it in each of the directions right, up, left and down in the
+// group's plane of least variance; of these the nearest three, without those clearly more than
+// three times as far away as the nearest.
 //
 // The result depends on positions, directions and kinds, and on the order of `cameras` only if two
 // of them are equal. It is the same on all machines. A million LF cameras take 2 to 3 seconds. To
