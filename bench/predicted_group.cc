@@ -128,7 +128,7 @@ lf::PinholeView ViewOf(const lf::PinholeCamera& camera) {
 }
 
 void EncodeFromOthers(const std::vector<GroupImage>& group, size_t index,
-                      const lf::CodecSettings& settings, const lf::InverseDepths& depths,
+                      const lf::CodecSettings& settings, const lf::InverseDepthRange& depths,
                       int block_px, lf::DecodedPart* decoded, Cost* cost) {
   const GroupImage& image = group[index];
   std::vector<lf::Reference> references;
@@ -168,8 +168,8 @@ int main(int argc, char** argv) {
   }
   std::vector<GroupImage> group = ReadGroup(*light_field, std::strtoul(argv[2], nullptr, 10));
   OrderFarthestFirst(&group);
-  const lf::InverseDepths depths = {1 / std::strtod(argv[4], nullptr),
-                                    1 / std::strtod(argv[3], nullptr)};
+  const lf::InverseDepthRange depths = {1 / std::strtod(argv[4], nullptr),
+                                        1 / std::strtod(argv[3], nullptr)};
   const int block_px = argc > 5 ? std::atoi(argv[5]) : lf::PredictionSettings().block_px;
   std::puts(
       "threshold,alone bytes,alone dB,alone encode s,alone decode s,"

@@ -60,7 +60,7 @@ PinholeView Halved(const PinholeView& view) {
 }
 
 std::optional<PlaneWarp> MakePlaneWarp(const PinholeView& target, const PinholeView& reference,
-                                       const InverseDepths& depths) {
+                                       const InverseDepthRange& depths) {
   const RigidTransform reference_from_target =
       reference.cam_from_world * target.cam_from_world.Inverse();
   const Mat3 target_rays = target.intrinsics.inverse();

@@ -60,7 +60,7 @@ PinholeView Halved(const PinholeView& view);
 
 // Inverse depths along the optical axis of the target, in 1 / world units. Depth index 0 stands for
 // `least`, kDepthSteps - 1 for `greatest`.
-struct InverseDepths {
+struct InverseDepthRange {
   double least = 0;
   double greatest = 0;
 };
@@ -68,7 +68,7 @@ struct InverseDepths {
 // Returns the warp from the target to the reference image. Returns nothing if its numbers exceed
 // the limits, as for cameras that look in opposite directions.
 std::optional<PlaneWarp> MakePlaneWarp(const PinholeView& target, const PinholeView& reference,
-                                       const InverseDepths& depths);
+                                       const InverseDepthRange& depths);
 
 // Positions and displacements of positions have kPositionBits fraction bits.
 inline constexpr int kPositionBits = 10;

@@ -23,14 +23,14 @@ Mat3 AnyRotation(RandomSequence& random, double most_rad) {
   return Eigen::AngleAxisd(random.Uniform(0, most_rad), axis.normalized()).toRotationMatrix();
 }
 
-double InverseDepthAt(const InverseDepths& depths, int depth) {
+double InverseDepthAt(const InverseDepthRange& depths, int depth) {
   return depths.least + depth * (depths.greatest - depths.least) / (kDepthSteps - 1);
 }
 
 // Projects a point of each plane into both cameras, in double precision.
 TEST(PlaneWarp, PointsOfThePlanesAreFound) {
   RandomSequence random(1);
-  const InverseDepths depths = {0.02, 0.5};
+  const InverseDepthRange depths = {0.02, 0.5};
   for (int i = 0; i < 2000; ++i) {
     const PinholeView target = ViewAt(Vec3::Zero(), AnyRotation(random, 3));
     PinholeView reference =
@@ -55,7 +55,7 @@ TEST(PlaneWarp, PointsOfThePlanesAreFound) {
 
 // A camera to the right sees points farther to the left, by the disparity f b / z.
 TEST(PlaneWarp, ParallelCamerasShift) {
-  const InverseDepths depths = {0, 0.63};
+  const InverseDepthRange depths = {0, 0.63};
   const auto warp = MakePlaneWarp(ViewAt({0, 0, 0}, Mat3::Identity()),
                                   ViewAt({0.1, 0, 0}, Mat3::Identity()), depths);
   ASSERT_TRUE(warp.has_value());
