@@ -123,14 +123,19 @@ void AddOutput(CLI::App& app, Arguments& a) {
 void AddQuality(CLI::App& app, Arguments& a) {
   lf::OptionGroup quality(app, lf::kQualityGroup);
   quality.AddChoice(
-      "--profile", a.codec.profile, {"default", "thesis", "lossless", "recorded"},
+      "--profile", a.codec.profile,
+      {"default", "thesis", "lossless", "recorded", "group", "group-lossless", "auto"},
       "How LF images are encoded\n"
       "default: lossy, wavelets with a dead-zone quantiser for each subband\n"
       "thesis: lossy, Haar wavelets with one threshold and one range of values for all subbands\n"
       "lossless: the decoded pixels equal those of the image files bit by bit\n"
       "recorded: image files are kept as they are, with their EXIF data. The profiles default and "
       "lossless keep those "
-      "that are smaller than their encoded images, such as most JPEG files.");
+      "that are smaller than their encoded images, such as most JPEG files.\n"
+      "group: as default, but LF images are predicted from a few others nearby where that saves a "
+      "tenth. Clean captures take about half the bytes; decoding takes about three times as long\n"
+      "group-lossless: the same without loss\n"
+      "auto: what takes the fewest bytes for a sample: group, default, or recorded");
   quality.AddChoice(
       "--entropy", a.codec.entropy, {"packed", "contexts"},
       "How wavelet coefficients become bytes\n"
@@ -214,6 +219,11 @@ lf::Result<lf::CompressOptions> MakeOptions(const Arguments& a, const lf::Common
     return lf::UsageError(
         "--by-resolution and --needed-pixels exclude each other, because smaller pictures are made "
         "of whole LF images: leave one of them out");
+  if (a.by_resolution && (a.codec.profile.starts_with("group") || a.codec.profile == "auto"))
+    return lf::UsageError(fmt::format(
+        "--by-resolution cannot be used with --profile {}, because LF images that are predicted "
+        "from others have no smaller pictures: leave one of them out",
+        a.codec.profile));
   options.by_resolution = a.by_resolution;
   lf::CodecWords codec = a.codec;
   if (a.by_resolution && codec.profile != "recorded") codec.reencode = true;

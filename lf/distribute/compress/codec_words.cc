@@ -9,11 +9,14 @@ namespace lf {
 namespace {
 
 Result<CodecProfile> ProfileOf(const std::string& word) {
-  if (word == "default") return CodecProfile::kDefault;
+  if (word == "default" || word == "group" || word == "auto") return CodecProfile::kDefault;
   if (word == "thesis") return CodecProfile::kThesis;
-  if (word == "lossless" || word == "recorded") return CodecProfile::kLossless;
-  return UsageError(
-      fmt::format("{{profile {}}}: expected one of default, thesis, lossless, recorded", word));
+  if (word == "lossless" || word == "group-lossless" || word == "recorded")
+    return CodecProfile::kLossless;
+  return UsageError(fmt::format(
+      "{{profile {}}}: expected one of default, thesis, lossless, recorded, group, group-lossless, "
+      "auto",
+      word));
 }
 
 Result<Entropy> EntropyOf(const std::string& word) {
@@ -28,7 +31,10 @@ Result<void> SetCodec(const CodecWords& words, CompressOptions* options) {
   LF_ASSIGN_OR_RETURN(options->codec.profile, ProfileOf(words.profile));
   LF_ASSIGN_OR_RETURN(options->codec.entropy, EntropyOf(words.entropy));
   const bool is_thesis = words.profile == "thesis", is_recorded = words.profile == "recorded";
-  const bool is_lossless = is_recorded || words.profile == "lossless";
+  const bool is_lossless = options->codec.profile == CodecProfile::kLossless;
+  options->prediction = words.profile.starts_with("group") ? Prediction::kGroups
+                        : words.profile == "auto"          ? Prediction::kChosen
+                                                           : Prediction::kNone;
   options->codec.levels = words.levels > 0 ? words.levels : is_thesis ? 1 : 4;
   options->codec.threshold = words.threshold >= 0 ? words.threshold : is_thesis ? 8 : 3;
   if (is_lossless && (words.threshold >= 0 || words.target_psnr > 0))
@@ -40,7 +46,12 @@ Result<void> SetCodec(const CodecWords& words, CompressOptions* options) {
     return UsageError(
         "{entropy contexts} cannot be used with {profile thesis}, whose coefficients are packed: "
         "leave one of them out");
-  if (words.quality_by_use && words.profile != "default")
+  if (words.profile == "auto" && words.reencode)
+    return UsageError(
+        "{reencode} cannot be used with {profile auto}, which chooses whether image files are "
+        "kept: "
+        "leave one of them out");
+  if (words.quality_by_use && words.profile != "default" && words.profile != "group")
     return UsageError(fmt::format(
         "{{quality_by_use}} cannot be used with {{profile {}}}, which has no threshold for each LF "
         "image: leave one of them out",
@@ -49,9 +60,11 @@ Result<void> SetCodec(const CodecWords& words, CompressOptions* options) {
     return UsageError(
         "{reencode} cannot be used with {profile recorded}, which keeps image files: leave one of "
         "them out");
-  options->files = is_recorded                   ? KeepFiles::kAll
-                   : is_thesis || words.reencode ? KeepFiles::kNone
-                                                 : KeepFiles::kSmaller;
+  // Files are decoded by libraries, whose results may change: no image is predicted from them.
+  const bool is_in_groups = options->prediction == Prediction::kGroups;
+  options->files = is_recorded                                   ? KeepFiles::kAll
+                   : is_thesis || words.reencode || is_in_groups ? KeepFiles::kNone
+                                                                 : KeepFiles::kSmaller;
   if (words.quantizer != "8bit") {
     if (!is_thesis)
       return UsageError(

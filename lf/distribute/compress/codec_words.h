@@ -11,7 +11,8 @@ namespace lf {
 
 // Each member has the meaning and the default of the option of lfcompressor with this name.
 struct CodecWords {
-  std::string profile = "default";  // default, thesis, lossless or recorded
+  // default, thesis, lossless, recorded, group, group-lossless or auto
+  std::string profile = "default";
   std::string quantizer = "8bit";
   std::string entropy = "packed";  // packed or contexts
   int levels = 0;                  // 0: the default of the profile
@@ -23,8 +24,8 @@ struct CodecWords {
   friend bool operator==(const CodecWords&, const CodecWords&) = default;
 };
 
-// Sets options->codec, options->files and options->target_psnr_db. kUsage: words that do not exist,
-// or that contradict each other.
+// Sets options->codec, options->files, options->prediction and options->target_psnr_db. kUsage:
+// words that do not exist, or that contradict each other.
 Result<void> SetCodec(const CodecWords& words, CompressOptions* options);
 
 }  // namespace lf

@@ -27,6 +27,20 @@ TEST(CodecWords, EachProfileHasItsDefaults) {
   EXPECT_EQ(chosen.threshold, 0);
 }
 
+TEST(CodecWords, GroupsKeepNoFiles) {
+  EXPECT_EQ(OptionsOf({}).prediction, Prediction::kNone);
+  const CompressOptions group = OptionsOf({.profile = "group"});
+  EXPECT_EQ(group.prediction, Prediction::kGroups);
+  EXPECT_EQ(group.files, KeepFiles::kNone);
+  EXPECT_EQ(group.codec.profile, CodecProfile::kDefault);
+  const CompressOptions lossless = OptionsOf({.profile = "group-lossless"});
+  EXPECT_EQ(lossless.prediction, Prediction::kGroups);
+  EXPECT_EQ(lossless.codec.profile, CodecProfile::kLossless);
+  const CompressOptions chosen = OptionsOf({.profile = "auto"});
+  EXPECT_EQ(chosen.prediction, Prediction::kChosen);
+  EXPECT_EQ(chosen.files, KeepFiles::kSmaller);
+}
+
 TEST(CodecWords, AQualityIsSearchedForOnlyIfItIsGiven) {
   EXPECT_FALSE(OptionsOf({}).target_psnr_db);
   EXPECT_EQ(OptionsOf({.target_psnr = 42}).target_psnr_db, 42);
@@ -37,7 +51,10 @@ TEST(CodecWords, WordsThatDoNotExistOrContradictAreRefused) {
        {CodecWords{.profile = "best"}, CodecWords{.profile = "lossless", .threshold = 3},
         CodecWords{.profile = "lossless", .target_psnr = 40}, CodecWords{.quantizer = "16"},
         CodecWords{.profile = "thesis", .quantizer = "many"}, CodecWords{.entropy = "best"},
-        CodecWords{.profile = "thesis", .entropy = "contexts"}}) {
+        CodecWords{.profile = "thesis", .entropy = "contexts"},
+        CodecWords{.profile = "group-lossless", .threshold = 3},
+        CodecWords{.profile = "auto", .quality_by_use = true},
+        CodecWords{.profile = "auto", .reencode = true}}) {
     CompressOptions options;
     const Result<void> set = SetCodec(wrong, &options);
     ASSERT_FALSE(set) << wrong.profile << " " << wrong.quantizer;

@@ -12,8 +12,11 @@
 
 #include "lf/core/check.h"
 #include "lf/core/log.h"
+#include "lf/distribute/compress/choose_prediction.h"
 #include "lf/distribute/compress/find_threshold.h"
+#include "lf/distribute/compress/group_coder.h"
 #include "lf/distribute/compress/image_coder.h"
+#include "lf/distribute/compress/image_groups.h"
 #include "lf/distribute/compress/verify_store.h"
 #include "lf/selection/spread_order.h"
 #include "lf/storage/load/copied_codes.h"
@@ -31,30 +34,33 @@ double Now() {
 
 // Returns the number of files of a store by resolution: one for each resolution that LF images can
 // be loaded with, up to an eighth of their size.
-size_t PartCount(const CompressOptions& options, const CodecSettings& settings, bool is_copied) {
+size_t PartCount(const CompressOptions& options, const Encoding& encoding, bool is_copied) {
   constexpr int kMostHalvings = 3;
   if (!options.by_resolution) return 0;
   // The levels of encoded images that are copied are not known yet.
   if (is_copied) return 1 + kMostHalvings;
-  if (settings.profile == CodecProfile::kThesis || options.files == KeepFiles::kAll) return 1;
-  return 1 + static_cast<size_t>(std::min(settings.levels, kMostHalvings));
+  if (encoding.settings.profile == CodecProfile::kThesis || encoding.files == KeepFiles::kAll)
+    return 1;
+  return 1 + static_cast<size_t>(std::min(encoding.settings.levels, kMostHalvings));
 }
 
 //   copied  null unless encoded images are copied
 PackedStorePlan PlanOf(const CompressSource& source, const CompressOptions& options,
-                       const CodecSettings& settings, const ThresholdFactors& factors,
+                       const Encoding& encoding, const ThresholdFactors& factors,
                        const CopiedCodes* copied) {
   PackedStorePlan plan;
   plan.whole = source.whole;
   plan.whole_ids = source.whole_ids;
   plan.rects = source.rects;
-  plan.codec = NameOf(settings, options.files, factors);
+  plan.codec = NameOf(encoding, factors);
+  plan.is_predicted = encoding.in_groups;
   plan.films = options.use != nullptr ? std::optional(options.use->films) : source.films;
   plan.display_levels =
-      ImageCoder(source.light_field.encoding, settings, KeepFiles::kNone, {}).display_levels();
+      ImageCoder(source.light_field.encoding, encoding.settings, KeepFiles::kNone, {})
+          .display_levels();
   if (copied != nullptr) copied->Describe(&plan);
   plan.shard_bytes = options.shard_bytes;
-  plan.part_count = PartCount(options, settings, copied != nullptr);
+  plan.part_count = PartCount(options, encoding, copied != nullptr);
   plan.source = options.source_name;
   plan.version = options.version;
   return plan;
@@ -101,21 +107,20 @@ class Compressor {
  private:
   Result<void> CheckTarget();
   Result<void> FindSkipped();
-  Result<void> ChooseThreshold();
+  Result<void> FindThresholdOf(Encoding* encoding);
+  Result<void> Choose();
   Result<void> Write(FileLock lock);
   std::vector<LfImageId> Ordered() const;
   Result<void> CheckFiles(const PackedStoreWriter& writer);
-  // An LF image as the store keeps it.
-  struct Coded {
-    CodedImage image;
-    CodeError lost;
-    uint64_t pixel_bytes = 0;
-    bool is_rounded = false;
-  };
-  Result<Coded> Encode(LfImageId id) const;
-  Result<Coded> Copy(const PackedStoreWriter& writer, LfImageId id) const;
-  void Count(LfImageId id, const Coded& coded);
+  Result<CodedMember> Encode(LfImageId id) const;
+  Result<CodedMember> Copy(const PackedStoreWriter& writer, LfImageId id) const;
+  void Count(const CodedMember& coded);
+  bool Goes();
+  void Note(const Error& error, LfImageId id, bool is_of_image);
   void AddOne(PackedStoreWriter* writer, LfImageId id);
+  void AddAlone(PackedStoreWriter* writer, std::span<const LfImageId> ids);
+  void AddGroups(PackedStoreWriter* writer);
+  void AddGroup(PackedStoreWriter* writer, std::span<const GroupMember> group);
   VerifyOptions Verification() const;
   Result<void> Verify();
   bool IsInterrupted() const { return options_.interrupted && *options_.interrupted; }
@@ -126,10 +131,11 @@ class Compressor {
   ThreadPool& pool_;
   const std::function<void(const CompressProgress&)>& progress_;
   const std::vector<LfImageId> ids_;  // LF images that are compressed
-  CodecSettings settings_;
+  Encoding encoding_;
   ThresholdFactors factors_;
   std::optional<ImageCoder> coder_;
-  std::unique_ptr<CopiedCodes> copied_;  // set if encoded images are copied
+  std::optional<GroupCoder> group_coder_;  // set if LF images are predicted
+  std::unique_ptr<CopiedCodes> copied_;    // set if encoded images are copied
   PackedStorePlan plan_;
 
   std::mutex mutex_;  // guards all members below
@@ -146,15 +152,34 @@ Error Compressor::Interrupted() const {
                       now_.total)};
 }
 
-void Compressor::AddOne(PackedStoreWriter* writer, LfImageId id) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (IsInterrupted()) ended_ = true;
-    if (ended_) return;
+// Returns false if no further LF image must be begun.
+bool Compressor::Goes() {
+  const std::lock_guard lock(mutex_);
+  if (IsInterrupted()) ended_ = true;
+  return !ended_;
+}
+
+// Notes an error; the caller holds the mutex. Only an LF image that is broken itself (kInput) is
+// skipped. If the machine lacks memory or disk space, Compress() fails.
+//   is_of_image  true: the error is about the LF image, and not about the store
+void Compressor::Note(const Error& error, LfImageId id, bool is_of_image) {
+  if (error.kind == ErrorKind::kInterrupted) {
+    ended_ = true;
+    return;
   }
+  const bool is_image = is_of_image && error.kind == ErrorKind::kInput;
+  if (is_image)
+    report_.skipped.push_back({source_.light_field.image_names[id.value], error.message});
+  if ((!is_image || options_.strict) && !ended_) {
+    ended_ = true;
+    error_ = error;
+  }
+}
+
+void Compressor::AddOne(PackedStoreWriter* writer, LfImageId id) {
+  if (!Goes()) return;
   const ThreadCpuTimer timer;
-  const std::string& name = source_.light_field.image_names[id.value];
-  const Result<Coded> coded = copied_ ? Copy(*writer, id) : Encode(id);
+  const Result<CodedMember> coded = copied_ ? Copy(*writer, id) : Encode(id);
   std::optional<Error> error;
   if (!coded)
     error = coded.error();
@@ -163,31 +188,80 @@ void Compressor::AddOne(PackedStoreWriter* writer, LfImageId id) {
 
   const std::lock_guard lock(mutex_);
   report_.encode_cpu_s += static_cast<double>(timer.Nanoseconds()) * 1e-9;
-  if (error && error->kind == ErrorKind::kInterrupted) {
-    ended_ = true;
-    return;
-  }
+  if (error) Note(*error, id, !coded);
+  if (error && error->kind == ErrorKind::kInterrupted) return;
   ++now_.done;
-  if (error) {
-    // Only an LF image that is broken itself (kInput) is skipped. If the machine lacks memory or
-    // disk space, Compress() fails.
-    const bool is_image = !coded && error->kind == ErrorKind::kInput;
-    if (is_image) report_.skipped.push_back({name, error->message});
-    if ((!is_image || options_.strict) && !ended_) {
-      ended_ = true;
-      error_ = *error;
-    }
-  } else {
-    Count(id, *coded);
-  }
+  if (!error) Count(*coded);
   if (progress_) progress_(now_);
 }
 
-Result<Compressor::Coded> Compressor::Encode(LfImageId id) const {
+void Compressor::AddAlone(PackedStoreWriter* writer, std::span<const LfImageId> ids) {
+  if (copied_ && copied_->ArePredicted()) {
+    // Copying is as fast in one thread, and adds reference images before those that need them.
+    for (const LfImageId id : ids) AddOne(writer, id);
+    return;
+  }
+  pool_.ForEach(ids.size(), [&](size_t i) { AddOne(writer, ids[i]); });
+}
+
+// Encodes a group and adds it to the store as a whole, because its images are of no use without
+// their reference images.
+void Compressor::AddGroup(PackedStoreWriter* writer, std::span<const GroupMember> group) {
+  if (!Goes()) return;
+  const ThreadCpuTimer timer;
+  size_t shown = 0;  // number of LF images that progress_() was told of
+  const auto encoded = [&] {
+    const std::lock_guard lock(mutex_);
+    ++shown;
+    ++now_.done;
+    if (progress_) progress_(now_);
+  };
+  const Result<CodedGroup> coded = group_coder_->Encode(group, encoded);
+  std::optional<Error> error;
+  if (!coded) {
+    error = coded.error();
+  } else {
+    std::vector<GroupedImage> images;
+    for (const CodedMember& member : coded->members) images.push_back({member.id, member.image});
+    if (const Result<void> added = writer->AddGroup(images); !added) error = added.error();
+  }
+  const std::lock_guard lock(mutex_);
+  report_.encode_cpu_s += static_cast<double>(timer.Nanoseconds()) * 1e-9;
+  if (error) {
+    now_.done -= shown;  // the store has none of them
+    Note(*error, group[0].id, false);
+    return;
+  }
+  for (const CodedGroup::Unreadable& image : coded->unreadable) Note(image.error, image.id, true);
+  for (const CodedMember& member : coded->members) Count(member);
+}
+
+// An LF image whose group is in the store already, because it was broken when the group was
+// encoded, is encoded by itself.
+void Compressor::AddGroups(PackedStoreWriter* writer) {
+  const ReferenceGroups groups = GroupsOf(source_);
+  std::vector<size_t> whole;
+  std::vector<LfImageId> single;
+  for (size_t g = 0; g < groups.size(); ++g) {
+    const std::span<const GroupMember> group = groups.Group(g);
+    const auto has = [&](const GroupMember& member) { return writer->Has(member.id); };
+    if (std::none_of(group.begin(), group.end(), has)) {
+      whole.push_back(g);
+      continue;
+    }
+    for (const GroupMember& member : group)
+      if (!has(member)) single.push_back(member.id);
+  }
+  pool_.ForEach(whole.size(), [&](size_t i) { AddGroup(writer, groups.Group(whole[i])); });
+  AddAlone(writer, single);
+}
+
+Result<CodedMember> Compressor::Encode(LfImageId id) const {
   const LightField& light_field = source_.light_field;
   const PixelRect rect = RectToRecord(light_field, id, source_.rects[id.value]);
   LF_ASSIGN_OR_RETURN(const RecordedImage image, ReadRecordedImage(light_field, id, rect));
-  Coded coded;
+  CodedMember coded;
+  coded.id = id;
   LF_ASSIGN_OR_RETURN(coded.image,
                       coder_->CodeOrFile(light_field, id, image, factors_.Of(id.value)));
   LF_ASSIGN_OR_RETURN(coded.lost, coder_->ErrorOf(image, coded.image));
@@ -197,8 +271,9 @@ Result<Compressor::Coded> Compressor::Encode(LfImageId id) const {
   return coded;
 }
 
-Result<Compressor::Coded> Compressor::Copy(const PackedStoreWriter& writer, LfImageId id) const {
-  Coded coded;
+Result<CodedMember> Compressor::Copy(const PackedStoreWriter& writer, LfImageId id) const {
+  CodedMember coded;
+  coded.id = id;
   LF_ASSIGN_OR_RETURN(coded.image, copied_->Of(id));
   for (const LfImageId reference : coded.image.references)
     if (!writer.Has(reference))
@@ -209,17 +284,18 @@ Result<Compressor::Coded> Compressor::Copy(const PackedStoreWriter& writer, LfIm
   return coded;
 }
 
-void Compressor::Count(LfImageId id, const Coded& coded) {
-  const std::string& name = source_.light_field.image_names[id.value];
+void Compressor::Count(const CodedMember& coded) {
+  const std::string& name = source_.light_field.image_names[coded.id.value];
   const CodeError& lost = coded.lost;
   ++report_.coded_count;
   report_.file_count += coded.image.values == StoredValues::kFile ? 1 : 0;
+  report_.predicted_count += coded.image.references.empty() ? 0 : 1;
   report_.rounded_count += coded.is_rounded ? 1 : 0;
   report_.source_bytes += coded.image.source_bytes;
   report_.pixel_bytes += coded.pixel_bytes;
   report_.code_bytes += coded.image.code.size() + coded.image.mask.size();
   report_.error += lost;
-  if (!errors_.empty()) errors_[id.value] = lost.Mean();
+  if (!errors_.empty()) errors_[coded.id.value] = lost.Mean();
   if (report_.worst_name.empty() || lost.PsnrDb() < report_.worst_psnr_db ||
       (lost.PsnrDb() == report_.worst_psnr_db && name < report_.worst_name)) {
     report_.worst_psnr_db = lost.PsnrDb();
@@ -270,8 +346,9 @@ Result<void> Compressor::CheckFiles(const PackedStoreWriter& writer) {
 }
 
 Result<void> Compressor::Write(FileLock lock) {
-  coder_.emplace(source_.light_field.encoding, settings_, options_.files,
-                 [this] { return IsInterrupted(); });
+  const auto is_interrupted = [this] { return IsInterrupted(); };
+  coder_.emplace(source_.light_field.encoding, encoding_.settings, encoding_.files, is_interrupted);
+  if (encoding_.in_groups) group_coder_.emplace(source_, *coder_, factors_, is_interrupted);
   LF_ASSIGN_OR_RETURN(PackedStoreWriter writer,
                       OpenWriter(source_, options_, plan_, std::move(lock)));
   LF_RETURN_IF_ERROR(CheckFiles(writer));
@@ -284,11 +361,10 @@ Result<void> Compressor::Write(FileLock lock) {
   LogDebug("{}: {} LF images to be encoded, {} are encoded; codec {}; {} threads",
            options_.store.string(), ids.size(), report_.resumed_count, plan_.codec,
            pool_.thread_count());
-  if (copied_ && copied_->ArePredicted())
-    // Copying is as fast in one thread, and adds reference images before those that need them.
-    for (const LfImageId id : ids) AddOne(&writer, id);
+  if (group_coder_)
+    AddGroups(&writer);
   else
-    pool_.ForEach(ids.size(), [&](size_t i) { AddOne(&writer, ids[i]); });
+    AddAlone(&writer, ids);
   std::sort(report_.skipped.begin(), report_.skipped.end(),
             [](const auto& a, const auto& b) { return a.name < b.name; });
   if (error_) {
@@ -310,8 +386,9 @@ Result<void> Compressor::Write(FileLock lock) {
 }
 
 VerifyOptions Compressor::Verification() const {
-  return {options_.store, copied_.get(), settings_,        factors_,
-          options_.files, plan_,         !options_.resume, [this] { return IsInterrupted(); }};
+  return {options_.store, copied_.get(), encoding_, factors_, plan_, !options_.resume, [this] {
+            return IsInterrupted();
+          }};
 }
 
 Result<void> Compressor::Verify() {
@@ -367,15 +444,35 @@ Result<void> Compressor::CheckTarget() {
   return {};
 }
 
-Result<void> Compressor::ChooseThreshold() {
-  if (options_.target_psnr_db) {
-    LF_ASSIGN_OR_RETURN(settings_.threshold,
-                        FindThreshold(source_, settings_, *options_.target_psnr_db, options_.use,
-                                      pool_, [this] { return IsInterrupted(); }));
-    LogDebug("{{target_psnr {}}}: threshold {}", *options_.target_psnr_db, settings_.threshold);
+// Sets the threshold that gives the quality that is asked for.
+Result<void> Compressor::FindThresholdOf(Encoding* encoding) {
+  if (!options_.target_psnr_db) return {};
+  LF_ASSIGN_OR_RETURN(encoding->settings.threshold,
+                      FindThreshold(source_, *encoding, *options_.target_psnr_db, options_.use,
+                                    pool_, [this] { return IsInterrupted(); }));
+  LogDebug("{{target_psnr {}}}: threshold {}", *options_.target_psnr_db,
+           encoding->settings.threshold);
+  return {};
+}
+
+// Chooses how LF images are encoded, as far as the options leave it open.
+Result<void> Compressor::Choose() {
+  encoding_ = {options_.codec, options_.files, options_.prediction == Prediction::kGroups};
+  if (!copied_) LF_RETURN_IF_ERROR(FindThresholdOf(&encoding_));
+  if (!copied_ && options_.prediction == Prediction::kChosen) {
+    LF_ASSIGN_OR_RETURN(report_.sample, SampleBytes(source_, encoding_.settings, factors_, pool_,
+                                                    [this] { return IsInterrupted(); }));
+    if (report_.sample->GroupsAreBetter()) {
+      encoding_.files = KeepFiles::kNone;
+      encoding_.in_groups = true;
+      LF_RETURN_IF_ERROR(FindThresholdOf(&encoding_));
+    } else if (report_.sample->FilesAreBetter()) {
+      encoding_.settings.profile = CodecProfile::kLossless;
+      encoding_.files = KeepFiles::kAll;
+    }
   }
-  report_.threshold = settings_.threshold;
-  plan_ = PlanOf(source_, options_, settings_, factors_, copied_.get());
+  report_.threshold = encoding_.settings.threshold;
+  plan_ = PlanOf(source_, options_, encoding_, factors_, copied_.get());
   report_.codec = plan_.codec;
   report_.is_copy = copied_ != nullptr;
   return {};
@@ -383,8 +480,7 @@ Result<void> Compressor::ChooseThreshold() {
 
 Result<CompressReport> Compressor::Run() {
   const double begin_s = Now();
-  settings_ = options_.codec;
-  LF_RETURN_IF_ERROR(CheckSettings(settings_));
+  LF_RETURN_IF_ERROR(CheckSettings(options_.codec));
   LF_CHECK(!options_.by_resolution || options_.shard_bytes == 0);
   if (source_.IsCopied()) {
     LF_ASSIGN_OR_RETURN(copied_, CopiedCodes::Open(source_.light_field));
@@ -403,7 +499,7 @@ Result<CompressReport> Compressor::Run() {
     LF_ASSIGN_OR_RETURN(held.lock, PackedStoreWriter::Lock(options_.store));
     LF_RETURN_IF_ERROR(CheckTarget());  // another program may have finished the store meanwhile
   }
-  LF_RETURN_IF_ERROR(ChooseThreshold());
+  LF_RETURN_IF_ERROR(Choose());
   if (report_.was_there) {
     if (const Result<void> same = CheckStoreFacts(source_, Verification()); !same)
       return Error{same.error().kind, same.error().message + ", or replace it with {overwrite}"};
@@ -420,25 +516,6 @@ Result<CompressReport> Compressor::Run() {
 }
 
 }  // namespace
-
-std::string NameOf(const CodecSettings& settings, KeepFiles files,
-                   const ThresholdFactors& factors) {
-  const char* const kept = files == KeepFiles::kSmaller ? ", or the image file if it is smaller"
-                           : files == KeepFiles::kAll   ? ", or the image file"
-                                                        : "";
-  const char* const entropy = settings.entropy == Entropy::kContexts ? ", coded by contexts" : "";
-  switch (settings.profile) {
-    case CodecProfile::kThesis:
-      return fmt::format("thesis, levels {}, threshold {}, quantizer {}", settings.levels,
-                         settings.threshold, settings.quantizer);
-    case CodecProfile::kDefault:
-      return fmt::format("default, levels {}, threshold {}{}{}{}", settings.levels,
-                         settings.threshold, factors.Words(), entropy, kept);
-    case CodecProfile::kLossless:
-      break;
-  }
-  return fmt::format("{}, levels {}{}{}", kLosslessCodec, settings.levels, entropy, kept);
-}
 
 Result<CompressReport> Compress(const CompressSource& source, const CompressOptions& options,
                                 ThreadPool& pool,

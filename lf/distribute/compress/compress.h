@@ -13,19 +13,33 @@
 
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
+#include "lf/distribute/compress/choose_prediction.h"
 #include "lf/distribute/compress/code_quality.h"
 #include "lf/distribute/compress/compress_source.h"
+#include "lf/distribute/compress/encoding.h"
 #include "lf/distribute/compress/image_use.h"
 #include "lf/distribute/compress/keep_files.h"
 #include "lf/pixels/codec/lf_image_codec.h"
 
 namespace lf {
 
+// Whether LF images are predicted from others of their group (selection/reference_groups.h).
+enum class Prediction : uint8_t {
+  kNone,    // every LF image is encoded by itself
+  kGroups,  // LF images are predicted where that saves a tenth of the bytes
+  // What takes the fewest bytes for a sample of the LF images: kGroups; kNone, where files that are
+  // smaller are kept; or KeepFiles::kAll.
+  kChosen,
+};
+
 struct CompressOptions {
   std::filesystem::path store;  // path of the packed store, such as STORE.lfs
   // The threshold is in grey steps (GreyStep() of code_quality.h) of the images' values.
   CodecSettings codec;
   KeepFiles files = KeepFiles::kSmaller;  // must be kNone for CodecProfile::kThesis
+  // Must be kNone for CodecProfile::kThesis and by_resolution. With kGroups, `files` must be kNone;
+  // with kChosen, kSmaller.
+  Prediction prediction = Prediction::kNone;
   // If not null, each LF image has a threshold of its own: codec's threshold times its factor of
   // ThresholdFactors. The profile must be kDefault.
   const ImageUse* use = nullptr;
@@ -71,7 +85,8 @@ struct CompressReport {
   std::string codec;          // settings in words, as the store records them
   bool is_copy = false;       // true: encoded images were copied from another store
   double threshold = 0;       // threshold of the encoder, in grey steps
-  size_t rounded_count = 0;   // LF images with floats that half floats cannot represent exactly
+  std::optional<SampledBytes> sample;  // by which Prediction::kChosen was chosen; unset without it
+  size_t rounded_count = 0;  // LF images with floats that half floats cannot represent exactly
   struct Skipped {
     std::string name;
     std::string reason;
@@ -80,9 +95,10 @@ struct CompressReport {
 
   // Count, sums and lowest quality of the LF images that this call encoded.
   size_t coded_count = 0;
-  size_t file_count = 0;      // of these, LF images that are kept as their files
-  uint64_t source_bytes = 0;  // size of the files of the LF images
-  uint64_t pixel_bytes = 0;   // size of the pixels, in the number type of the files
+  size_t file_count = 0;       // of these, LF images that are kept as their files
+  size_t predicted_count = 0;  // of these, LF images that are predicted from others
+  uint64_t source_bytes = 0;   // size of the files of the LF images
+  uint64_t pixel_bytes = 0;    // size of the pixels, in the number type of the files
   uint64_t code_bytes = 0;
   CodeError error;
   double worst_psnr_db = 0;  // lowest PSNR of an LF image; infinite if all are exact
@@ -98,12 +114,6 @@ struct CompressReport {
   std::optional<size_t> verified_count;
   uint64_t store_bytes = 0;  // size of all files of the store
 };
-
-// Returns the settings in words, as a store records them. A store is resumed or verified only with
-// equal words. Words of settings that lose nothing begin with kLosslessCodec.
-//   factors  factors of the threshold of settings
-std::string NameOf(const CodecSettings& settings, KeepFiles files,
-                   const ThresholdFactors& factors = {});
 
 // Compresses the LF images of `source` into options.store. If its light field is a packed store,
 // copies their encoded images, with the settings of that store in place of options.codec and files.

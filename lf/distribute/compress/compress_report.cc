@@ -49,6 +49,13 @@ std::string CompressText(const CompressReport& report, const CompressOptions& op
         "{} LF images are left out, because the packages do not need them: a film that needs them "
         "cannot be rendered from this store\n",
         report.left_out_count);
+  if (report.sample)
+    text += fmt::format(
+        "chosen    of {} LF images, groups have {:.2f} of the bytes of single images{}\n",
+        report.sample->image_count, Ratio(report.sample->in_groups, report.sample->alone),
+        report.sample->file_count == 0
+            ? std::string()
+            : fmt::format(", or of the {} files that are smaller", report.sample->file_count));
   if (report.was_there) text += "existed already: nothing was written\n";
   if (report.resumed_count > 0)
     text += fmt::format(
@@ -66,6 +73,9 @@ std::string CompressText(const CompressReport& report, const CompressOptions& op
     text += fmt::format("files     {}B: {:.2f} : 1\n",
                         ShortNumber(static_cast<double>(report.source_bytes)),
                         Ratio(report.source_bytes, report.code_bytes));
+    if (report.predicted_count > 0)
+      text += fmt::format("predicted {} of {} LF images from others of their groups\n",
+                          report.predicted_count, report.coded_count);
     if (report.file_count > 0)
       text += fmt::format("kept      {} of {} LF images as their files, which are {}\n",
                           report.file_count, report.coded_count,
@@ -119,6 +129,12 @@ std::string CompressJson(const CompressReport& report, const CompressOptions& op
   json["resumed"] = report.resumed_count;
   json["coded"] = report.coded_count;
   json["files_kept"] = report.file_count;
+  json["predicted"] = report.predicted_count;
+  if (report.sample)
+    json["sample"] = {{"lf_images", report.sample->image_count},
+                      {"bytes_in_groups", report.sample->in_groups},
+                      {"bytes_alone", report.sample->alone},
+                      {"smaller_files", report.sample->file_count}};
   json["source_bytes"] = report.source_bytes;
   json["pixel_bytes"] = report.pixel_bytes;
   json["code_bytes"] = report.code_bytes;

@@ -173,12 +173,14 @@ TEST(CompressSource, OtherLightFieldsAndPackagesWithoutRaysAreErrors) {
 }
 
 TEST(CompressOptions, SettingsAreNamed) {
-  EXPECT_EQ(NameOf(CodecSettings{}, KeepFiles::kNone), "default, levels 4, threshold 3");
-  EXPECT_EQ(NameOf(CodecSettings{}, KeepFiles::kSmaller),
+  EXPECT_EQ(NameOf(Encoding{}), "default, levels 4, threshold 3");
+  EXPECT_EQ(NameOf(Encoding{{}, KeepFiles::kSmaller}),
             "default, levels 4, threshold 3, or the image file if it is smaller");
-  EXPECT_EQ(NameOf(CodecSettings{CodecProfile::kThesis, 1, 8, 256}, KeepFiles::kNone),
+  EXPECT_EQ(NameOf(Encoding{{CodecProfile::kThesis, 1, 8, 256}}),
             "thesis, levels 1, threshold 8, quantizer 256");
-  EXPECT_EQ(NameOf(CodecSettings{CodecProfile::kLossless, 2, 0, 0}, KeepFiles::kAll),
+  EXPECT_EQ(NameOf(Encoding{{}, KeepFiles::kNone, true}),
+            "default, levels 4, threshold 3, in groups");
+  EXPECT_EQ(NameOf(Encoding{{CodecProfile::kLossless, 2, 0, 0}, KeepFiles::kAll}),
             "lossless, levels 2, or the image file");
 }
 

@@ -6,12 +6,15 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "lf/distribute/compress/group_coder.h"
 #include "lf/distribute/compress/image_coder.h"
+#include "lf/distribute/compress/image_groups.h"
 #include "lf/storage/load/recorded_image.h"
 
 namespace lf {
@@ -22,6 +25,17 @@ constexpr size_t kLookedAt = 12;  // largest number of LF images in the sample
 // Thresholds that are tried, in grey steps: from 0.05 on, each 5 % above the previous one.
 constexpr int kSteps = 160;
 double ThresholdOf(int step) { return std::round(0.05 * std::pow(1.05, step) * 1e4) / 1e4; }
+
+Error Interruption() {
+  return {ErrorKind::kInterrupted,
+          "interrupted during the search for the threshold of {target_psnr}"};
+}
+
+Error NoneCanBeRead(size_t count, const Error& first) {
+  return InputError(fmt::format(
+      "{{target_psnr}}: none of the {} LF images that were tried can be read; the first: {}", count,
+      first.message));
+}
 
 // Predicts the error of frames at any threshold, from errors at a few thresholds.
 class FrameSample {
@@ -65,57 +79,125 @@ class FrameSample {
   std::map<int, double> known_;  // AtNode() of a node
 };
 
-}  // namespace
+// A sample of LF images that can be encoded at any threshold.
+class Sample {
+ public:
+  virtual ~Sample() = default;
+  // Returns the error of all LF images of the sample that can be read.
+  virtual CodeError ErrorAt(double threshold, ThreadPool& pool) const = 0;
+};
 
-Result<double> FindThreshold(const CompressSource& source, const CodecSettings& settings,
-                             double psnr_db, const ImageUse* use, ThreadPool& pool,
-                             const std::function<bool()>& is_interrupted) {
-  const Error interrupted = {ErrorKind::kInterrupted,
-                             "interrupted during the search for the threshold of {target_psnr}"};
-  if (settings.profile == CodecProfile::kLossless)
-    return UsageError(
-        "{target_psnr} cannot be used with {profile lossless}, which has no loss: leave one of "
-        "them out");
-  const LightField& light_field = source.light_field;
-  const std::vector<LfImageId> ids = source.CompressedIds();
-  std::vector<Result<RecordedImage>> images(std::min(kLookedAt, ids.size()),
-                                            Error{ErrorKind::kInput, ""});
-  pool.ForEach(images.size(), [&](size_t i) {
-    if (is_interrupted()) return;
-    const LfImageId id = ids[i * ids.size() / images.size()];
-    const PixelRect rect = RectToRecord(light_field, id, source.rects[id.value]);
-    images[i] = ReadRecordedImage(light_field, id, rect);
-  });
-  const auto error_at = [&](double threshold) {
-    CodecSettings of_threshold = settings;
+// LF images that are encoded by themselves.
+class SingleImages : public Sample {
+ public:
+  static Result<std::unique_ptr<Sample>> Read(const CompressSource& source,
+                                              const CodecSettings& settings, ThreadPool& pool,
+                                              const std::function<bool()>& is_interrupted) {
+    const std::vector<LfImageId> ids = source.CompressedIds();
+    auto sample = std::make_unique<SingleImages>(source, settings, is_interrupted);
+    sample->images_.assign(std::min(kLookedAt, ids.size()), Error{ErrorKind::kInput, ""});
+    pool.ForEach(sample->images_.size(), [&](size_t i) {
+      if (is_interrupted()) return;
+      const LfImageId id = ids[i * ids.size() / sample->images_.size()];
+      const PixelRect rect = RectToRecord(source.light_field, id, source.rects[id.value]);
+      sample->images_[i] = ReadRecordedImage(source.light_field, id, rect);
+    });
+    if (is_interrupted()) return Interruption();
+    if (std::none_of(sample->images_.begin(), sample->images_.end(),
+                     [](const auto& image) { return bool(image); }))
+      return NoneCanBeRead(sample->images_.size(), sample->images_.front().error());
+    return std::unique_ptr<Sample>(std::move(sample));
+  }
+
+  SingleImages(const CompressSource& source, const CodecSettings& settings,
+               const std::function<bool()>& is_interrupted)
+      : source_(source), settings_(settings), is_interrupted_(is_interrupted) {}
+
+  CodeError ErrorAt(double threshold, ThreadPool& pool) const override {
+    CodecSettings of_threshold = settings_;
     of_threshold.threshold = threshold;
-    const ImageCoder coder(light_field.encoding, of_threshold, KeepFiles::kNone, is_interrupted);
-    std::vector<CodeError> errors(images.size());
-    pool.ForEach(images.size(), [&](size_t i) {
-      if (!images[i]) return;
-      const Result<CodedImage> coded = coder.Code(*images[i]);
+    const ImageCoder coder(source_.light_field.encoding, of_threshold, KeepFiles::kNone,
+                           is_interrupted_);
+    std::vector<CodeError> errors(images_.size());
+    pool.ForEach(images_.size(), [&](size_t i) {
+      if (!images_[i]) return;
+      const Result<CodedImage> coded = coder.Code(*images_[i]);
       if (!coded) return;
-      if (const Result<CodeError> error = coder.ErrorOf(*images[i], *coded)) errors[i] = *error;
+      if (const Result<CodeError> error = coder.ErrorOf(*images_[i], *coded)) errors[i] = *error;
     });
     CodeError together;
     for (const CodeError& error : errors) together += error;
     return together;
-  };
+  }
+
+ private:
+  const CompressSource& source_;
+  const CodecSettings settings_;
+  const std::function<bool()> is_interrupted_;
+  std::vector<Result<RecordedImage>> images_;
+};
+
+// Groups of LF images that are predicted.
+class WholeGroups : public Sample {
+ public:
+  WholeGroups(const CompressSource& source, const CodecSettings& settings,
+              const std::function<bool()>& is_interrupted)
+      : source_(source),
+        settings_(settings),
+        is_interrupted_(is_interrupted),
+        groups_(GroupsOf(source)),
+        sample_(SampleOf(groups_, kLookedAt)) {}
+
+  CodeError ErrorAt(double threshold, ThreadPool& pool) const override {
+    CodecSettings of_threshold = settings_;
+    of_threshold.threshold = threshold;
+    const ImageCoder coder(source_.light_field.encoding, of_threshold, KeepFiles::kNone,
+                           is_interrupted_);
+    const ThresholdFactors equal;
+    const GroupCoder group_coder(source_, coder, equal, is_interrupted_);
+    std::vector<CodeError> errors(sample_.size());
+    pool.ForEach(sample_.size(), [&](size_t i) {
+      const Result<CodedGroup> coded = group_coder.Encode(groups_.Group(sample_[i]));
+      if (!coded) return;
+      for (const CodedMember& member : coded->members) errors[i] += member.lost;
+    });
+    CodeError together;
+    for (const CodeError& error : errors) together += error;
+    return together;
+  }
+
+ private:
+  const CompressSource& source_;
+  const CodecSettings settings_;
+  const std::function<bool()> is_interrupted_;
+  const ReferenceGroups groups_;
+  const std::vector<size_t> sample_;
+};
+
+}  // namespace
+
+Result<double> FindThreshold(const CompressSource& source, const Encoding& encoding, double psnr_db,
+                             const ImageUse* use, ThreadPool& pool,
+                             const std::function<bool()>& is_interrupted) {
+  if (encoding.settings.profile == CodecProfile::kLossless)
+    return UsageError(
+        "{target_psnr} cannot be used with {profile lossless}, which has no loss: leave one of "
+        "them out");
+  LF_ASSIGN_OR_RETURN(const std::unique_ptr<Sample> single,
+                      SingleImages::Read(source, encoding.settings, pool, is_interrupted));
+  std::optional<WholeGroups> groups;
+  if (encoding.in_groups) groups.emplace(source, encoding.settings, is_interrupted);
+  const Sample& sample = groups ? *groups : *single;
   std::optional<FrameSample> frames;
   if (use != nullptr)
     frames.emplace(*use, source.rects,
-                   [&](double threshold) { return error_at(threshold).Mean(); });
+                   [&](double threshold) { return sample.ErrorAt(threshold, pool).Mean(); });
   const auto psnr_at = [&](double threshold) {
-    if (!frames) return error_at(threshold).PsnrDb();
+    if (!frames) return sample.ErrorAt(threshold, pool).PsnrDb();
     return CodeError{frames->ErrorAt(threshold), 1}.PsnrDb();
   };
-  if (is_interrupted()) return interrupted;
-  if (std::none_of(images.begin(), images.end(), [](const auto& image) { return bool(image); }))
-    return InputError(fmt::format(
-        "{{target_psnr}}: none of the {} LF images that were tried can be read; the first: {}",
-        images.size(), images.front().error().message));
   const double best = psnr_at(ThresholdOf(0));
-  if (is_interrupted()) return interrupted;
+  if (is_interrupted()) return Interruption();
   if (best < psnr_db)
     return UsageError(fmt::format(
         "{{target_psnr {}}}: cannot be reached, because these options give at most {:.1f} "
@@ -125,7 +207,7 @@ Result<double> FindThreshold(const CompressSource& source, const CodecSettings& 
   while (bad - good > 1) {
     const int middle = (good + bad) / 2;
     (psnr_at(ThresholdOf(middle)) >= psnr_db ? good : bad) = middle;
-    if (is_interrupted()) return interrupted;
+    if (is_interrupted()) return Interruption();
   }
   return ThresholdOf(good);
 }

@@ -47,27 +47,41 @@ Result<CodedImage> ImageCoder::CodeOrFile(const LightField& light_field, LfImage
   return SmallerOf(std::move(code), std::move(file));
 }
 
-Result<CodedImage> ImageCoder::Code(const RecordedImage& image, double factor) const {
+CodecSettings ImageCoder::SettingsFor(const RecordedImage& image, double factor) const {
   CodecSettings settings = settings_;
-  settings.threshold *= factor;
-  if (IsLinear(image) && settings.profile == CodecProfile::kDefault) {
-    settings.threshold *= curve_->grey_step();
-    RecordedImage on_curve = image;
-    on_curve.pixels = OnCurve(image.pixels);
-    on_curve.values = StoredValues::kDisplay16;
-    return CodeOf(on_curve, settings, is_interrupted_);
-  }
-  settings.threshold *= GreyStep(encoding_, image.values);
-  return CodeOf(image, settings, is_interrupted_);
+  settings.threshold *=
+      factor * (IsEncodedOnCurve(image) ? curve_->grey_step() : GreyStep(encoding_, image.values));
+  return settings;
+}
+
+RecordedImage ImageCoder::Prepared(const RecordedImage& image) const {
+  RecordedImage prepared = image;
+  if (!IsEncodedOnCurve(image)) return prepared;
+  prepared.pixels = OnCurve(image.pixels);
+  prepared.values = StoredValues::kDisplay16;
+  return prepared;
+}
+
+Result<CodedImage> ImageCoder::Code(const RecordedImage& image, double factor) const {
+  const CodecSettings settings = SettingsFor(image, factor);
+  if (!IsEncodedOnCurve(image)) return CodeOf(image, settings, is_interrupted_);
+  return CodeOf(Prepared(image), settings, is_interrupted_);
+}
+
+Result<CodedImage> ImageCoder::CodeFrom(const RecordedImage& image,
+                                        std::span<const Reference> references,
+                                        const PredictionSettings& prediction, double factor) const {
+  const CodecSettings settings = SettingsFor(image, factor);
+  if (!IsEncodedOnCurve(image))
+    return lf::CodeFrom(image, settings, references, prediction, is_interrupted_);
+  return lf::CodeFrom(Prepared(image), settings, references, prediction, is_interrupted_);
 }
 
 Result<CodeError> ImageCoder::ErrorOf(const RecordedImage& image, const CodedImage& coded) const {
   if (coded.values == StoredValues::kFile)
     return CodeError{
         0, std::visit([](const auto& pixels) { return pixels.pixels().size(); }, image.pixels)};
-  const bool is_linear = IsLinear(image);
-  const double grey_step = is_linear ? curve_->grey_step() : GreyStep(encoding_, image.values);
-  const CodecPixels on_curve = is_linear ? OnCurve(image.pixels) : CodecPixels();
+  const CodecPixels on_curve = IsLinear(image) ? OnCurve(image.pixels) : CodecPixels();
   CodeError error;
   DecodedPart decoded;
   for (int y = 0; y < image.rect.height(); y += kBandRows) {
@@ -75,11 +89,23 @@ Result<CodeError> ImageCoder::ErrorOf(const RecordedImage& image, const CodedIma
     const PixelRect band = {0, y, image.rect.width(), std::min(y + kBandRows, image.rect.height())};
     const Result<void> result = DecodeImage(coded.code, band, &decoded);
     LF_CHECK(result.has_value() && decoded.rect == band);
-    if (is_linear && coded.values != StoredValues::kDisplay16)
-      decoded.pixels = OnCurve(decoded.pixels);
-    error += lf::ErrorOf(is_linear ? on_curve : image.pixels, decoded, grey_step);
+    error += ErrorOf(image, on_curve, coded.values, decoded);
   }
   return error;
+}
+
+CodeError ImageCoder::ErrorOf(const RecordedImage& image, StoredValues values,
+                              const DecodedPart& decoded) const {
+  return ErrorOf(image, IsLinear(image) ? OnCurve(image.pixels) : CodecPixels(), values, decoded);
+}
+
+CodeError ImageCoder::ErrorOf(const RecordedImage& image, const CodecPixels& on_curve,
+                              StoredValues values, const DecodedPart& decoded) const {
+  if (!IsLinear(image))
+    return lf::ErrorOf(image.pixels, decoded, GreyStep(encoding_, image.values));
+  if (values == StoredValues::kDisplay16)
+    return lf::ErrorOf(on_curve, decoded, curve_->grey_step());
+  return lf::ErrorOf(on_curve, {OnCurve(decoded.pixels), decoded.rect}, curve_->grey_step());
 }
 
 }  // namespace lf

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 
 #include "lf/core/ids.h"
 #include "lf/core/result.h"
@@ -36,6 +37,13 @@ class ImageCoder {
   // Encodes an image. The default profile encodes linear values of 16 bits along the display curve.
   Result<CodedImage> Code(const RecordedImage& image, double factor = 1) const;
 
+  // Encodes an image relative to others, with `references` as for EncodePredicted().
+  Result<CodedImage> CodeFrom(const RecordedImage& image, std::span<const Reference> references,
+                              const PredictionSettings& prediction, double factor) const;
+
+  // Returns the values that Code() encodes: along the display curve, or as they are stored.
+  RecordedImage Prepared(const RecordedImage& image) const;
+
   // Returns the levels of the display curve if images are encoded along it.
   std::optional<DisplayLevels> display_levels() const;
 
@@ -43,12 +51,25 @@ class ImageCoder {
   // measured along the display curve for all profiles, because equal errors along this curve are
   // equally visible.
   Result<CodeError> ErrorOf(const RecordedImage& image, const CodedImage& coded) const;
+  // Measures the error of decoded values.
+  //   values  CodedImage::values
+  CodeError ErrorOf(const RecordedImage& image, StoredValues values,
+                    const DecodedPart& decoded) const;
+
+  // Returns the settings of the codec for an image: the threshold in stored values of Prepared().
+  CodecSettings SettingsFor(const RecordedImage& image, double factor) const;
 
  private:
+  bool IsEncodedOnCurve(const RecordedImage& image) const {
+    return IsLinear(image) && settings_.profile == CodecProfile::kDefault;
+  }
   bool IsLinear(const RecordedImage& image) const {
     return curve_ && image.values == StoredValues::kUint16;
   }
   Image<uint16_t> OnCurve(const CodecPixels& pixels) const;
+  //   on_curve  OnCurve() of the image if IsLinear()
+  CodeError ErrorOf(const RecordedImage& image, const CodecPixels& on_curve, StoredValues values,
+                    const DecodedPart& decoded) const;
 
   const RadianceEncoding encoding_;
   const CodecSettings settings_;

@@ -10,9 +10,8 @@
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
 #include "lf/distribute/compress/compress_source.h"
+#include "lf/distribute/compress/encoding.h"
 #include "lf/distribute/compress/image_use.h"
-#include "lf/distribute/compress/keep_files.h"
-#include "lf/pixels/codec/lf_image_codec.h"
 #include "lf/storage/load/copied_codes.h"
 #include "lf/storage/packed/packed_store_writer.h"
 
@@ -21,9 +20,8 @@ namespace lf {
 struct VerifyOptions {
   std::filesystem::path store;
   const CopiedCodes* copied = nullptr;  // set if encoded images were copied from another store
-  CodecSettings settings;               // settings that the store must have been made with
-  ThresholdFactors factors;             // factors of their threshold
-  KeepFiles files = KeepFiles::kNone;   // as the store must have been made
+  Encoding encoding;                    // with which the store must have been made
+  ThresholdFactors factors;             // factors of the threshold of settings
   PackedStorePlan plan;                 // the plan that the store must match
   bool any_shards = true;               // true: shards may have any size
   std::function<bool()> is_interrupted;

@@ -184,15 +184,17 @@ PixelRect RectToRecord(const LightField& light_field, LfImageId id, const PixelR
   return MosaicRectOf(inside, whole.width(), whole.height());
 }
 
+bool CanKeepFile(const LightField& light_field, LfImageId id, const PixelRect& rect) {
+  return rect == WholeOf(light_field, id) && !PictureViewOf(light_field.ImagePath(id));
+}
+
 Result<std::optional<CodedImage>> FileAsCode(const LightField& light_field, LfImageId id,
                                              const RecordedImage& image,
                                              const std::function<bool()>& is_interrupted) {
-  const fs::path path = light_field.ImagePath(id);
-  if (image.rect != WholeOf(light_field, id) || PictureViewOf(path))
-    return std::optional<CodedImage>();
+  if (!CanKeepFile(light_field, id, image.rect)) return std::optional<CodedImage>();
   LF_ASSIGN_OR_RETURN(CodedImage coded, MaskOf(image, is_interrupted));
   coded.values = StoredValues::kFile;
-  LF_ASSIGN_OR_RETURN(coded.code, ReadFile(path));
+  LF_ASSIGN_OR_RETURN(coded.code, ReadFile(light_field.ImagePath(id)));
   return std::optional(std::move(coded));
 }
 
@@ -210,6 +212,16 @@ Result<CodedImage> CodeOf(const RecordedImage& image, const CodecSettings& setti
   LF_ASSIGN_OR_RETURN(coded.code,
                       EncodeImage(image.pixels, image.layout, settings, is_interrupted));
   if (coded.mask.empty()) coded.front_ends = *FrontEndsOf(coded.code);
+  return coded;
+}
+
+Result<CodedImage> CodeFrom(const RecordedImage& image, const CodecSettings& settings,
+                            std::span<const Reference> references,
+                            const PredictionSettings& prediction,
+                            const std::function<bool()>& is_interrupted) {
+  LF_ASSIGN_OR_RETURN(CodedImage coded, MaskOf(image, is_interrupted));
+  coded.code = EncodePredicted(image.pixels, image.layout, settings, references, prediction).code;
+  if (is_interrupted && is_interrupted()) return Error{ErrorKind::kInterrupted, "interrupted"};
   return coded;
 }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "lf/core/result.h"
 #include "lf/light_field/model/light_field.h"
 #include "lf/pixels/codec/lf_image_codec.h"
+#include "lf/pixels/codec/predicted_image.h"
 #include "lf/storage/packed/packed_store_writer.h"
 
 namespace lf {
@@ -65,9 +67,21 @@ CodedImage CodeOf(const RecordedImage& image, const CodecSettings& settings);
 Result<CodedImage> CodeOf(const RecordedImage& image, const CodecSettings& settings,
                           const std::function<bool()>& is_interrupted);
 
+// Encodes the pixels relative to reference images of their layout and number type, which the caller
+// names in CodedImage::references, and the mask or the opacities losslessly. Arguments are those of
+// EncodePredicted(). kInterrupted as CodeOf(), but only before and after the pixels are encoded.
+Result<CodedImage> CodeFrom(const RecordedImage& image, const CodecSettings& settings,
+                            std::span<const Reference> references,
+                            const PredictionSettings& prediction,
+                            const std::function<bool()>& is_interrupted);
+
+// Returns true if the LF image's file can be kept in place of its encoded pixels `rect`: they are
+// all of its pixels, and the LF image is no view of a larger picture.
+bool CanKeepFile(const LightField& light_field, LfImageId id, const PixelRect& rect);
+
 // Returns the bytes of the LF image's file as its encoded image, with the encoded mask or
-// opacities. nullopt if `image` has only a part of the pixels, or the LF image is a view of a
-// larger picture. kInput: the file cannot be read. kInterrupted as CodeOf().
+// opacities. nullopt if CanKeepFile() is false for the pixels of `image`. kInput: the file cannot
+// be read. kInterrupted as CodeOf().
 Result<std::optional<CodedImage>> FileAsCode(const LightField& light_field, LfImageId id,
                                              const RecordedImage& image,
                                              const std::function<bool()>& is_interrupted = {});
