@@ -56,7 +56,8 @@ struct GroupSteps {
 };
 
 // Returns an estimate of the noise of an image, as the standard deviation of its brightness
-// (pixels/prediction/brightness.h): how much the smoothest of its blocks differ from a plane.
+// (pixels/prediction/brightness.h): how much the smoothest of its blocks differ from a plane. It is
+// up to a quarter too low.
 double NoiseOf(const Image<uint8_t>& brightness);
 
 // A predicted image that has more than this share of the bytes of the image encoded by itself is
