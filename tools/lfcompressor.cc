@@ -133,12 +133,13 @@ void AddQuality(CLI::App& app, Arguments& a) {
       "lossless keep those "
       "that are smaller than their encoded images, such as most JPEG files.\n"
       "group: as default, but LF images are predicted from a few others nearby where that saves a "
-      "tenth. Clean captures take about half the bytes; decoding takes about three times as long\n"
+      "tenth. Clean captures take about half the bytes; decoding takes about four times as long\n"
       "group-lossless: the same without loss\n"
       "auto: what takes the fewest bytes for a sample: group, default, or recorded");
   quality.AddChoice(
-      "--entropy", a.codec.entropy, {"packed", "contexts"},
+      "--entropy", a.codec.entropy, {"auto", "packed", "contexts"},
       "How wavelet coefficients become bytes\n"
+      "auto: contexts for LF images in groups, packed for others\n"
       "packed: several in a byte, compressed by zstd\n"
       "contexts: each by what its neighbours predict, for slow networks and small disks. The same "
       "pixels take 3 to 29 % fewer bytes, but decoding takes two to three times as long. Not for "

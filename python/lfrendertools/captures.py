@@ -158,9 +158,12 @@ def write_packages(field: LightField, path: Union[Path, Camera], folder: FilePat
     return facts
 
 
+PROFILES = ("default", "lossless", "thesis", "recorded", "group", "group-lossless", "auto")
+
+
 def compress(field: LightField, store: FilePath, *, profile: str = "default", threshold: Optional[float] = None,
              target_psnr: Optional[float] = None, levels: Optional[int] = None, quantizer: str = "8bit",
-             entropy: str = "packed", reencode: bool = False, shard_size: str = "", resume: bool = False,
+             entropy: str = "auto", reencode: bool = False, shard_size: str = "", resume: bool = False,
              overwrite: bool = False, verify: bool = False, strict: bool = False, threads: int = 0,
              progress: Progress = None) -> _Facts:
     """Compress the LF images into a packed store, as `lfcompressor` does.
@@ -171,9 +174,11 @@ def compress(field: LightField, store: FilePath, *, profile: str = "default", th
         The light field.
     store : path
         The file to write; its name ends in `.lfs`. :func:`open` opens it.
-    profile : {"default", "lossless", "thesis", "recorded"}
+    profile : {"default", "lossless", "thesis", "recorded", "group", "group-lossless", "auto"}
         How LF images are encoded. "recorded" keeps image files as they are; "default" and "lossless" keep those that
-        are smaller than their encoded images.
+        are smaller than their encoded images. "group" and "group-lossless" predict LF images from others nearby
+        where that saves a tenth: about half the bytes for clean captures, and about four times as long to decode.
+        "auto" takes "group", "default" or "recorded", whichever takes the fewest bytes for a sample.
     threshold : float, optional
         Wavelet coefficients below it, in 1/255 of the range of values, are dropped; by default that of the profile.
     target_psnr : float, optional
@@ -182,9 +187,10 @@ def compress(field: LightField, store: FilePath, *, profile: str = "default", th
         Levels of the wavelet transform, 1 to 5; by default those of the profile.
     quantizer : str
         For the profile "thesis": "8bit", or the number of values of a coefficient.
-    entropy : {"packed", "contexts"}
+    entropy : {"auto", "packed", "contexts"}
         How wavelet coefficients become bytes. "contexts" takes 3 to 29 % fewer bytes for the same pixels, and two
-        to three times as long to decode. Not for the profile "thesis".
+        to three times as long to decode. Not for the profile "thesis". "auto": "contexts" for LF images in groups,
+        "packed" for others.
     reencode : bool
         True: encode all LF images, also those whose files are smaller.
     shard_size : str
@@ -223,9 +229,9 @@ def compress(field: LightField, store: FilePath, *, profile: str = "default", th
     if words.resume and words.overwrite:
         raise UsageError("resume and overwrite cannot both be True")
     codec = _core.CodecWords()
-    codec.profile = arguments.choice("profile", profile, ("default", "lossless", "thesis", "recorded"))
+    codec.profile = arguments.choice("profile", profile, PROFILES)
     codec.quantizer = arguments.text("quantizer", quantizer)
-    codec.entropy = arguments.choice("entropy", entropy, ("packed", "contexts"))
+    codec.entropy = arguments.choice("entropy", entropy, ("auto", "packed", "contexts"))
     codec.reencode = arguments.flag("reencode", reencode)
     if threshold is not None and target_psnr is not None:
         raise UsageError("threshold and target_psnr cannot both be given")

@@ -19,17 +19,20 @@ Result<CodecProfile> ProfileOf(const std::string& word) {
       word));
 }
 
-Result<Entropy> EntropyOf(const std::string& word) {
-  if (word == "packed") return Entropy::kPacked;
-  if (word == "contexts") return Entropy::kContexts;
-  return UsageError(fmt::format("{{entropy {}}}: expected packed or contexts", word));
+// Sets the coders of LF images by themselves, and of those in groups.
+Result<void> SetEntropy(const std::string& word, CompressOptions* options) {
+  if (word != "auto" && word != "packed" && word != "contexts")
+    return UsageError(fmt::format("{{entropy {}}}: expected auto, packed or contexts", word));
+  options->codec.entropy = word == "contexts" ? Entropy::kContexts : Entropy::kPacked;
+  options->group_entropy = word == "packed" ? Entropy::kPacked : Entropy::kContexts;
+  return {};
 }
 
 }  // namespace
 
 Result<void> SetCodec(const CodecWords& words, CompressOptions* options) {
   LF_ASSIGN_OR_RETURN(options->codec.profile, ProfileOf(words.profile));
-  LF_ASSIGN_OR_RETURN(options->codec.entropy, EntropyOf(words.entropy));
+  LF_RETURN_IF_ERROR(SetEntropy(words.entropy, options));
   const bool is_thesis = words.profile == "thesis", is_recorded = words.profile == "recorded";
   const bool is_lossless = options->codec.profile == CodecProfile::kLossless;
   options->prediction = words.profile.starts_with("group") ? Prediction::kGroups

@@ -14,17 +14,18 @@ struct CodecWords {
   // default, thesis, lossless, recorded, group, group-lossless or auto
   std::string profile = "default";
   std::string quantizer = "8bit";
-  std::string entropy = "packed";  // packed or contexts
-  int levels = 0;                  // 0: the default of the profile
-  double threshold = -1;           // below 0: the default of the profile
-  double target_psnr = 0;          // in dB; 0: the threshold is not searched for
-  bool reencode = false;           // true: no image file is kept
+  std::string entropy = "auto";  // auto, packed or contexts
+  int levels = 0;                // 0: the default of the profile
+  double threshold = -1;         // below 0: the default of the profile
+  double target_psnr = 0;        // in dB; 0: the threshold is not searched for
+  bool reencode = false;         // true: no image file is kept
   bool quality_by_use = false;
 
   friend bool operator==(const CodecWords&, const CodecWords&) = default;
 };
 
-// Sets options->codec, options->files, options->prediction and options->target_psnr_db. kUsage:
+// Sets options->codec, options->files, options->prediction,
+// options->group_entropy and options->target_psnr_db. kUsage:
 // words that do not exist, or that contradict each other.
 Result<void> SetCodec(const CodecWords& words, CompressOptions* options);
 

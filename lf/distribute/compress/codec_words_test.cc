@@ -33,6 +33,10 @@ TEST(CodecWords, GroupsKeepNoFiles) {
   EXPECT_EQ(group.prediction, Prediction::kGroups);
   EXPECT_EQ(group.files, KeepFiles::kNone);
   EXPECT_EQ(group.codec.profile, CodecProfile::kDefault);
+  EXPECT_EQ(group.group_entropy, Entropy::kContexts);
+  EXPECT_EQ(OptionsOf({.profile = "group", .entropy = "packed"}).group_entropy, Entropy::kPacked);
+  EXPECT_EQ(OptionsOf({}).codec.entropy, Entropy::kPacked);
+  EXPECT_EQ(OptionsOf({.entropy = "contexts"}).codec.entropy, Entropy::kContexts);
   const CompressOptions lossless = OptionsOf({.profile = "group-lossless"});
   EXPECT_EQ(lossless.prediction, Prediction::kGroups);
   EXPECT_EQ(lossless.codec.profile, CodecProfile::kLossless);

@@ -458,13 +458,17 @@ Result<void> Compressor::FindThresholdOf(Encoding* encoding) {
 // Chooses how LF images are encoded, as far as the options leave it open.
 Result<void> Compressor::Choose() {
   encoding_ = {options_.codec, options_.files, options_.prediction == Prediction::kGroups};
+  if (encoding_.in_groups) encoding_.settings.entropy = options_.group_entropy;
   if (!copied_) LF_RETURN_IF_ERROR(FindThresholdOf(&encoding_));
   if (!copied_ && options_.prediction == Prediction::kChosen) {
-    LF_ASSIGN_OR_RETURN(report_.sample, SampleBytes(source_, encoding_.settings, factors_, pool_,
+    CodecSettings of_groups = encoding_.settings;
+    of_groups.entropy = options_.group_entropy;
+    LF_ASSIGN_OR_RETURN(report_.sample, SampleBytes(source_, of_groups, factors_, pool_,
                                                     [this] { return IsInterrupted(); }));
     if (report_.sample->GroupsAreBetter()) {
       encoding_.files = KeepFiles::kNone;
       encoding_.in_groups = true;
+      encoding_.settings = of_groups;
       LF_RETURN_IF_ERROR(FindThresholdOf(&encoding_));
     } else if (report_.sample->FilesAreBetter()) {
       encoding_.settings.profile = CodecProfile::kLossless;

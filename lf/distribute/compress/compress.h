@@ -40,6 +40,8 @@ struct CompressOptions {
   // Must be kNone for CodecProfile::kThesis and by_resolution. With kGroups, `files` must be kNone;
   // with kChosen, kSmaller.
   Prediction prediction = Prediction::kNone;
+  // Replaces codec.entropy if LF images are predicted.
+  Entropy group_entropy = Entropy::kContexts;
   // If not null, each LF image has a threshold of its own: codec's threshold times its factor of
   // ThresholdFactors. The profile must be kDefault.
   const ImageUse* use = nullptr;

@@ -45,9 +45,9 @@ struct CodedGroup {
 // Thresholds of a group, as factors of the threshold of the settings. Errors of anchors pass into
 // the images that are predicted from them, so that finer ones pay.
 struct GroupSteps {
-  double key = 0.6;
-  double anchors = 0.8;
-  double others = 1.1;
+  double key = 0.5;
+  double anchors = 0.7;
+  double others = 1.2;
   // The noise of few anchors, passed on to all, would not average out in frames.
   static GroupSteps ForNoise() { return {1, 1, 1}; }
   double Of(size_t rank, size_t group_size) const {

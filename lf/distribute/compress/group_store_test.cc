@@ -175,7 +175,7 @@ TEST_F(GroupStoreTest, AutoChoosesByASample) {
   MakeCapture<uint8_t>(PixelLayout::kRgb);
   Result<CompressReport> report = Make();
   ASSERT_TRUE(report) << report.error().message;
-  EXPECT_EQ(report->codec, "default, levels 4, threshold 3, in groups");
+  EXPECT_EQ(report->codec, "default, levels 4, threshold 3, coded by contexts, in groups");
   ASSERT_TRUE(report->sample);
   EXPECT_EQ(report->sample->image_count, source_.light_field.size());
   EXPECT_LT(report->sample->in_groups, report->sample->alone);
