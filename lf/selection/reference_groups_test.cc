@@ -313,8 +313,8 @@ double DecodingsPerImage(int columns, int rows, int window) {
 
 TEST(ReferenceGroups, FewImagesMustBeDecodedToSeeSome) {
   for (const auto& [columns, rows] : {std::pair(32, 32), std::pair(37, 29), std::pair(27, 27)}) {
-    EXPECT_LT(DecodingsPerImage(columns, rows, 1), 6) << columns;
-    EXPECT_LT(DecodingsPerImage(columns, rows, 9), 1.36) << columns;
+    EXPECT_LT(DecodingsPerImage(columns, rows, 1), 5) << columns;
+    EXPECT_LT(DecodingsPerImage(columns, rows, 9), 1.3) << columns;
   }
 }
 

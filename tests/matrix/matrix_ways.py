@@ -37,7 +37,8 @@ RUNS = {  # options with which a run changes the content of the frames
     "area": ["--order", "area", "--max-images", MOST_IMAGES],
 }
 INPUTS = ("folder", "store", "lossy store", "recorded store", "store by resolution", "coarser store",
-          "store of packages", "lossy store of packages", "needed pixels", "lossy needed pixels", "densified store")
+          "group store", "store of packages", "lossy store of packages", "group store of packages", "needed pixels",
+          "lossy needed pixels", "group needed pixels", "densified store")
 CUTS = ("whole", "packages", "moved packages", "shards", "shards of packages", "lfsubmit")
 FIELDS = ("rgb", "mosaic", "alpha", "opacity", "falloff", "shutter", "depths", "heights", "flawed", "flawed mosaic")
 VALUES = {"field": FIELDS, "input": INPUTS, "cut": CUTS, "mode": tuple(MODES), "run": tuple(RUNS)}

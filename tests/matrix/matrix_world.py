@@ -299,7 +299,8 @@ class World:
             words += ["--needed-pixels"] if "needed" in source else []
         else:
             words = [self.folder_of(field)]
-        profile = "default" if "lossy" in source else "recorded" if "recorded" in source else "lossless"
+        profile = {"lossy": "default", "recorded": "recorded", "group": "group-lossless"}.get(
+            source.split()[0], "lossless")
         if source in ("store by resolution", "coarser store"):
             words.append("--by-resolution")
         if source in ("store by resolution", "coarser store") or "lossy" in source:
