@@ -46,6 +46,7 @@ TABLES = {
     "noise_remedies": ("rebinning", "bench/quality/noise_remedies.py {build} {data}/groundtruth", "--only nothing"),
     "noise_rule": ("checkpoints", "bench/quality/noise_rule.py {build} --data {data}", None),
     "order_quality": ("checkpoints", "bench/quality/order_quality.py {build}/bin {data}", "--only cards --seeds 1"),
+    "group_order": ("checkpoints", "bench/quality/group_order.py {build}/bin {data}", "--only band --seeds 1"),
     "coefficient_rounds": ("checkpoints", "bench/quality/coefficient_rounds.py {build}/bin {data}", "--only cards"),
     "reduced_programs": ("codec", "bench/reduced_programs.py {build} --data {data}",
                          "--only 'stanford-cards, 384' --runs 1"),

@@ -126,7 +126,9 @@ void AddQuality(CLI::App& app, Arguments& a) {
                    "many are taken; by --seed\n"
                    "shuffle: random, by --seed\n"
                    "round-robin: always an LF image for the frame with the fewest rays\n"
-                   "area: LF images with the most rays first");
+                   "area: LF images with the most rays first\n"
+                   "groups: groups of neighbours one after another, by --seed; predicted LF "
+                   "images of packed stores are then decoded with little memory");
   quality
       .Add("--depths NEAR FAR", a.depths,
            "Nearest and farthest depth of the scene, for the forecast\n"

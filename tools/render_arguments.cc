@@ -189,7 +189,7 @@ void RenderArguments::AddRenderingTo(CLI::App& app) {
 
 OfferedOptions RenderArguments::Common() {
   return {.threads = true,
-          .seed = "Seed of --order spread, --order shuffle and --kept edges",
+          .seed = "Seed of --order and --kept edges",
           .strict =
               "Stop at a missing or broken LF image\n"
               "Without this option it is left out.",

@@ -9,13 +9,14 @@
 #include "lf/core/check.h"
 #include "lf/core/random.h"
 #include "lf/core/value_named.h"
+#include "lf/selection/group_order.h"
 #include "lf/selection/spread_order.h"
 
 namespace lf {
 namespace {
 
 constexpr uint64_t kShuffleStream = 1;  // streams of other random numbers: spread_sequence.cc
-constexpr const char* kNames[] = {"spread", "shuffle", "round-robin", "area"};
+constexpr const char* kNames[] = {"spread", "shuffle", "round-robin", "area", "groups"};
 
 std::vector<uint32_t> Shuffle(size_t image_count, uint64_t seed) {
   std::vector<std::pair<uint64_t, uint32_t>> keyed(image_count);
@@ -112,11 +113,15 @@ bool DependsOnFrames(ImageOrder order) {
   return order == ImageOrder::kRoundRobin || order == ImageOrder::kArea;
 }
 
+bool TakesNeighboursTogether(ImageOrder order) {
+  return order == ImageOrder::kArea || order == ImageOrder::kGroups;
+}
+
 const char* NameOf(ImageOrder order) { return kNames[static_cast<int>(order)]; }
 
 std::optional<ImageOrder> ImageOrderOf(const std::string& name) {
   return ValueNamed(name, {ImageOrder::kSpread, ImageOrder::kShuffle, ImageOrder::kRoundRobin,
-                           ImageOrder::kArea});
+                           ImageOrder::kArea, ImageOrder::kGroups});
 }
 
 ImageRanks ShuffledRanks(size_t image_count, uint64_t seed) {
@@ -126,6 +131,7 @@ ImageRanks ShuffledRanks(size_t image_count, uint64_t seed) {
 ImageRanks RanksOf(ImageOrder order, const LightField& light_field, uint64_t seed) {
   LF_CHECK(!DependsOnFrames(order));
   if (order == ImageOrder::kShuffle) return ShuffledRanks(light_field.size(), seed);
+  if (order == ImageOrder::kGroups) return RanksOf(OrderByGroups(light_field, seed));
   return RanksOf(SpreadOrder(light_field, seed));
 }
 

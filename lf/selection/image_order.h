@@ -22,6 +22,10 @@ namespace lf {
 //   kSpread      every beginning is spread evenly over the positions of the LF cameras
 //                (spread_order.h), which with a seed are all that it depends on: unfinished frames
 //                are nearest to finished ones
+//   kGroups      groups of neighbouring LF images one after another, and the groups spread evenly
+//                (group_order.h): a film that takes all predicted LF images of a packed store
+//                decodes each about once with little memory, but unfinished frames are worst,
+//                because their lens has holes; depends on positions and the seed alone
 //   kShuffle     random, depends only on a seed and not on the frames: the result is even among all
 //                frames, also before all LF images are processed
 //   kRoundRobin  all frames get rays equally fast: the next LF image is one that the frame with the
@@ -29,13 +33,18 @@ namespace lf {
 //   kArea        LF images with the most rays, summed over all frames, come first: gives many rays
 //                soon, but neighbouring LF images follow each other, so that the bokeh of
 //                unfinished frames is uneven
-enum class ImageOrder { kSpread, kShuffle, kRoundRobin, kArea };
+enum class ImageOrder { kSpread, kShuffle, kRoundRobin, kArea, kGroups };
 
 // Returns true for kRoundRobin and kArea.
 bool DependsOnFrames(ImageOrder order);
 
-// Convert an order to "spread", "shuffle", "round-robin" or "area", and back. ImageOrderOf()
-// returns nullopt for any other text.
+// Returns true for kArea and kGroups, in which neighbouring LF images follow each other. The first
+// LF images of a frame are then no sample of all of them: the noise of their mean says nothing
+// about the difference to the finished frame.
+bool TakesNeighboursTogether(ImageOrder order);
+
+// Convert an order to "spread", "shuffle", "round-robin", "area" or "groups", and back.
+// ImageOrderOf() returns nullopt for any other text.
 const char* NameOf(ImageOrder order);
 std::optional<ImageOrder> ImageOrderOf(const std::string& name);
 

@@ -29,6 +29,7 @@ std::vector<std::vector<ImageRays>> Film() {
 // Returns as many LF cameras in a row.
 LightField Row() {
   LightField field;
+  field.intrinsics.push_back({100, 100, 50, 50, 0, 100, 100});
   field.cameras.resize(kImages);
   for (size_t i = 0; i < kImages; ++i)
     field.cameras[i].cam_from_world.translation.x() = static_cast<double>(i);
@@ -64,8 +65,8 @@ double SpreadAfterATenth(const ImageRanks& ranks,
 }
 
 TEST(ImageOrder, EveryOrderHasEachImageOnce) {
-  for (const ImageOrder order :
-       {ImageOrder::kSpread, ImageOrder::kShuffle, ImageOrder::kRoundRobin, ImageOrder::kArea}) {
+  for (const ImageOrder order : {ImageOrder::kSpread, ImageOrder::kShuffle, ImageOrder::kRoundRobin,
+                                 ImageOrder::kArea, ImageOrder::kGroups}) {
     const ImageRanks ranks =
         DependsOnFrames(order) ? RanksInOrder(order, kImages, 3, Film()) : RanksOf(order, Row(), 3);
     EXPECT_EQ(ranks.end, kImages);

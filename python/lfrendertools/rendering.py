@@ -48,15 +48,15 @@ class Renderer:
     lf_pixels : {"auto", "areas", "points"}
         What LF pixels show, for the filter "prefiltered": the mean light of their area, or the light of their centre.
         Default "auto": as the light field states, otherwise measured.
-    order : {"spread", "shuffle", "round-robin", "area"}
+    order : {"spread", "shuffle", "round-robin", "area", "groups"}
         Order in which frames take LF images, which matters if they end early. Default "spread": spread evenly over the
-        lens, however many are taken.
+        lens, however many are taken. "groups": predicted LF images of packed stores are decoded with little memory.
     max_images : int, optional
         Largest number of LF images for each frame. Default None: all.
     max_angle_deg : float, optional
         Largest angle between the optical axes of LF camera and frame, up to 180. Default None: no limit.
     seed : int
-        Seed of the random numbers: of the orders "spread" and "shuffle", and of rebinned rays. Default 0.
+        Seed of the random numbers: of the orders "spread", "shuffle" and "groups", and of rebinned rays. Default 0.
     stop_when : str
         Rule by which a frame is finished early: "noise<=X" or "samples>=N", as `--stop-when` of `lfrenderer`. Default
         "": none.

@@ -35,6 +35,7 @@ RUNS = {  # options with which a run changes the content of the frames
     "max-images": ["--max-images", MOST_IMAGES],
     "round-robin": ["--order", "round-robin", "--max-images", MOST_IMAGES],
     "area": ["--order", "area", "--max-images", MOST_IMAGES],
+    "groups": ["--order", "groups"],
 }
 INPUTS = ("folder", "store", "lossy store", "recorded store", "store by resolution", "coarser store",
           "group store", "store of packages", "lossy store of packages", "group store of packages", "needed pixels",
@@ -66,7 +67,7 @@ def render_mode(mode):
 
 
 def is_order(run_name):
-    return run_name in ("round-robin", "area")
+    return run_name in ("round-robin", "area", "groups")
 
 
 class Matrix(World):
@@ -121,6 +122,8 @@ class Matrix(World):
         source, cut = cell.input, "whole"
         run_name = {"killed": "once", "interrupted": "once", "small": "once", "finish": "once",
                     "noise killed": "noise"}.get(cell.run, cell.run)
+        if run_name == "groups" and render_mode(cell.mode) == "collect":
+            run_name = "once"  # sums of all rays do not depend on the order
         if source == "coarser store":
             pass
         elif "lossy" not in source:

@@ -106,7 +106,7 @@ Result<void> Reader::ReadNumber() {
 Result<void> Reader::ReadChoices() {
   PackageChoices& choices = package_.choices;
   const std::optional<ImageOrder> order = ImageOrderOf(settings_.Text("order"));
-  if (!order) return settings_.Wrong("order", "spread, shuffle, round-robin or area");
+  if (!order) return settings_.Wrong("order", "spread, shuffle, round-robin, area or groups");
   choices.order = *order;
   LF_ASSIGN_OR_RETURN(choices.seed, settings_.Whole("seed"));
   if (!settings_.Text("max_images").empty()) {

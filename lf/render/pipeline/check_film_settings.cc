@@ -167,6 +167,22 @@ Result<void> CheckGuard(const Package& package, const FilmSettings& film) {
   return {};
 }
 
+// Checks that the first LF images of a frame are a sample of all of them if a rule reads them as
+// one.
+Result<void> CheckOrder(const Package& package, const FilmSettings& film) {
+  if (!TakesNeighboursTogether(film.order)) return {};
+  const bool samples = film.order == ImageOrder::kGroups && film.stop_when.samples;
+  const bool is_part = film.stop_when.noise || film.max_image_count;
+  if (!samples && !(film.MeasuresNoise() && is_part)) return {};
+  return UsageError(fmt::format(
+      "{{order {}}}: the first LF images of a frame are neighbours, so that {} ({{stop_when}}, "
+      "{{require}}) would take it for finished while its lens has holes: {}",
+      NameOf(film.order), samples ? "\"samples>=N\"" : "\"noise<=X\"",
+      package.name.empty()
+          ? "use {order spread}, or leave the rule out"
+          : "make the packages again with {lfpreprocessor order spread}, or leave the rule out"));
+}
+
 }  // namespace
 
 Result<void> CheckFilmSettings(const Package& package, const FilmSettings& options,
@@ -180,6 +196,7 @@ Result<void> CheckFilmSettings(const Package& package, const FilmSettings& optio
         "package {} was made with {{max_images {}}}, and contains no more LF images of any "
         "frame: give lfrenderer at most this {{max_images}}, or make the package again",
         package.name, *most));
+  LF_RETURN_IF_ERROR(CheckOrder(package, film));
   LF_RETURN_IF_ERROR(CheckRecordingTimes(package, film));
   LF_RETURN_IF_ERROR(CheckShard(film));
   if (package.whole_virtual_count > 0 && film.guard) LF_RETURN_IF_ERROR(CheckGuard(package, film));

@@ -48,7 +48,7 @@ struct FilmSettings {
   // The next three settings select the LF images of a whole light field. They are unused if
   // packages are rendered, because a package states them itself (PackageChoices).
   ImageOrder order = ImageOrder::kSpread;  // in which frames take LF images
-  uint64_t seed = 0;                       // of the orders kSpread, kShuffle, and of rebinned rays
+  uint64_t seed = 0;  // of the orders kSpread, kShuffle and kGroups, and of rebinned rays
   // If set, the largest angle between the axes of LF camera and frame, above 0.
   std::optional<double> max_angle_rad;
 

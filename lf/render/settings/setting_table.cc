@@ -147,15 +147,18 @@ void AddQualityRows(std::vector<Setting>& rows) {
                "are taken; by {seed}\n"
                "shuffle: random, by {seed}\n"
                "round-robin: always an LF image for the frame with the fewest rays\n"
-               "area: LF images with the most rays first"},
+               "area: LF images with the most rays first\n"
+               "groups: groups of neighbours one after another, by {seed}; predicted LF images of "
+               "packed stores are then decoded with little memory"},
       LF_MEMBER(order),
-      Named({ImageOrder::kSpread, ImageOrder::kShuffle, ImageOrder::kRoundRobin,
-             ImageOrder::kArea})));
-  rows.push_back(Plain({.key = "seed",
-                        .is_in_packages = true,
-                        .placeholder = "N",
-                        .text = "Seed of {order spread}, {order shuffle} and {kept edges}"},
-                       LF_MEMBER(seed)));
+      Named({ImageOrder::kSpread, ImageOrder::kShuffle, ImageOrder::kRoundRobin, ImageOrder::kArea,
+             ImageOrder::kGroups})));
+  rows.push_back(
+      Plain({.key = "seed",
+             .is_in_packages = true,
+             .placeholder = "N",
+             .text = "Seed of {order} and {kept edges}"},
+            LF_MEMBER(seed)));
   rows.push_back(Rule(
       {.key = "stop_when",
        .placeholder = "RULE",
