@@ -19,6 +19,7 @@
 #include "python/src/setting_words.h"
 #include "python/src/work.h"
 
+#include "lf/core/log.h"
 #include "lf/core/quantities.h"
 #include "lf/core/spelling.h"
 #include "lf/core/version.h"
@@ -54,6 +55,7 @@ class Film {
           PathOf(std::move(cameras), fps, field.light_field.unit_m, std::move(shutter)), options,
           pool_));
       setup_ = Take(FilmSetup::Make(std::move(package), options.film, options.work, ids, pool_));
+      if (const std::string note = setup_->ReferenceNote(); !note.empty()) LogInfo("{}", note);
       Take(setup_->PlanSlabs());
       inputs_ = Take(InputsOfRays(*setup_));
     });

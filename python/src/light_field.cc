@@ -40,6 +40,9 @@ namespace {
 
 namespace py = pybind11;
 
+// Memory for reference images of predicted LF images, of LF images that a script reads one by one.
+constexpr uint64_t kReferenceBytes = uint64_t{256} << 20;
+
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 std::shared_ptr<OpenedField> Open(
@@ -74,6 +77,7 @@ std::shared_ptr<OpenedField> Open(
     if (times.size() > 1) options.path_times = times;
     field->light_field = Take(OpenLightField(path, options));
     field->store = Take(OpenStore(field->light_field, Mosaics::kToRgb));
+    field->store->LimitReferences(kReferenceBytes);
     field->options = words.WordsToKeep();
     return field;
   });

@@ -23,6 +23,9 @@ namespace {
 
 constexpr size_t kMostDrafts = 8;
 constexpr uint64_t kMostFilms = 3;
+// Memory for reference images of predicted LF images. Who looks around asks for neighbours, so that
+// those of a few dozen groups suffice.
+constexpr uint64_t kReferenceBytes = uint64_t{256} << 20;
 
 }  // namespace
 
@@ -38,6 +41,7 @@ Result<std::unique_ptr<PageScene>> PageScene::Open(LightField light_field,
                                                    PageArguments arguments) {
   std::unique_ptr<PageScene> scene(new PageScene(std::move(light_field), std::move(arguments)));
   LF_ASSIGN_OR_RETURN(scene->store_, OpenStore(scene->light_field_, Mosaics::kToRgb));
+  scene->store_->LimitReferences(kReferenceBytes);
   LF_RETURN_IF_ERROR(scene->OpenFirstDraft());
   LF_RETURN_IF_ERROR(scene->OpenPackages());
   LF_RETURN_IF_ERROR(scene->OpenDepths());

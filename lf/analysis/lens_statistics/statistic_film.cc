@@ -30,7 +30,8 @@ Result<StatisticPlan> PlanOf(const FilmSetup& setup, const RenderCamera& camera,
   const size_t row_bytes = ElementValues::BytesOfRow(width, static_cast<int>(kind), image_count);
   const auto plan_for = [&](size_t bytes, size_t plates, size_t other_bytes) {
     return PlanMemory(bytes, setup.light_field(), setup.film().reading, width, height, plates,
-                      setup.pool().thread_count(), other_bytes, false, 1, camera.surface.get());
+                      setup.pool().thread_count(), other_bytes, false, 1, camera.surface.get(),
+                      setup.References());
   };
   // Refuses what does not suffice for the values of one row of elements.
   LF_RETURN_IF_ERROR(plan_for(memory_bytes, 1, result_bytes + row_bytes));
@@ -143,6 +144,7 @@ Result<PassPlan> StatisticFilm::Plan(FilmSetup* setup, std::span<const FrameId> 
   const RenderCamera& camera = setup->path().Camera(frames.front());
   LF_ASSIGN_OR_RETURN(const StatisticPlan plan, PlanOf(*setup, camera, most));
   plan_ = std::make_unique<StatisticPlan>(plan);
+  if (plan.collect.reference_bytes > 0) setup->LimitReferences(plan.collect.reference_bytes);
   const int height = camera.pinhole.intrinsics.height_px;
   const bool is_whole = plan.rows == height;
   return PassPlan{plan.frames_per_pass, plan.collect.frames_finished_at_once,

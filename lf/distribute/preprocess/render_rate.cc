@@ -39,7 +39,8 @@ std::vector<SelectedImage> SampleOf(const FrameNeeds& needs, const LfImageStore&
 
 Result<RenderRate> MeasureRate(const ImageIndex& index, const RenderCamera& frame,
                                size_t instant_count, const NeedsOptions& needs_options,
-                               const RayReading& reading, ThreadPool& pool) {
+                               const RayReading& reading, const KeptReferences& kept,
+                               ThreadPool& pool) {
   const LightField& light_field = index.light_field();
   const FrameNeeds needs = NeedsOf(index, frame, needs_options, pool);
   LF_ASSIGN_OR_RETURN(
@@ -47,6 +48,8 @@ Result<RenderRate> MeasureRate(const ImageIndex& index, const RenderCamera& fram
       OpenStore(light_field, reading.estimator == Estimator::kBilinear ? Mosaics::kToRgb
                                                                        : Mosaics::kAsRecorded));
   const LfImageStore& store = *opened;
+  const uint64_t reference_bytes = store.ReferenceBytes();
+  if (reference_bytes > 0) opened->LimitReferences(kept.bytes);
   SensorPlate plate(frame.pinhole.intrinsics.width_px, frame.pinhole.intrinsics.height_px,
                     light_field.encoding.HasOpacity() ? PlateKind::kOpacity : PlateKind::kColours);
   const std::vector<SelectedImage> sample = SampleOf(needs, store);
@@ -73,6 +76,18 @@ Result<RenderRate> MeasureRate(const ImageIndex& index, const RenderCamera& fram
   if (loaded == 0) return InputError(statistics.skipped.front().reason);
   RenderRate rate;
   rate.load_s = statistics.times.load_cpu_s / static_cast<double>(loaded);
+  if (reference_bytes > 0 && !kept.in_groups) {
+    // The LF images of the sample are far apart, so that each has been decoded with all of its
+    // reference images. In the render, as large a part of these is in memory as is kept.
+    SensorPlate again(plate.width(), plate.height(), plate.kind());
+    collected.plate = &again;
+    LF_ASSIGN_OR_RETURN(const CollectStatistics kept_all,
+                        Collect(light_field, store, {collected}, sample, options, pool, nullptr));
+    const double kept_s = kept_all.times.load_cpu_s / static_cast<double>(loaded);
+    const double kept_share =
+        std::min(1.0, static_cast<double>(kept.bytes) / static_cast<double>(reference_bytes));
+    rate.load_s = kept_s + (1 - kept_share) * std::max(0.0, rate.load_s - kept_s);
+  }
   rate.collect_s = statistics.times.collect_cpu_s /
                    static_cast<double>(std::max<uint64_t>(1, statistics.frames[0].tested_count));
 

@@ -21,6 +21,12 @@ struct RenderRate {
   double finish_s = 0;   // CPU time of lens weights, developing and writing of one frame
 };
 
+// Decoded reference images that a render keeps.
+struct KeptReferences {
+  size_t bytes = 0;        // MemoryPlan::reference_bytes
+  bool in_groups = false;  // ReferenceNeed::in_groups
+};
+
 // Computes the lens weights of the frame, loads a few of the LF images that the frame needs,
 // collects their rays, develops the plate, and writes the picture into the system's temporary
 // folder. kInput: none of these LF images can be loaded. kOutput: the picture cannot be written.
@@ -28,6 +34,7 @@ struct RenderRate {
 //                  those of `frame`
 Result<RenderRate> MeasureRate(const ImageIndex& index, const RenderCamera& frame,
                                size_t instant_count, const NeedsOptions& needs,
-                               const RayReading& reading, ThreadPool& pool);
+                               const RayReading& reading, const KeptReferences& kept,
+                               ThreadPool& pool);
 
 }  // namespace lf

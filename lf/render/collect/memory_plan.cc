@@ -36,10 +36,14 @@ constexpr size_t kMostSheetPictures = 12;
 // decoder's own memory. The second number is for float files.
 constexpr size_t kDecodeBytesPerPixel = 16;
 constexpr size_t kDecodeFloatBytesPerPixel = 32;
+// Additional memory to decode a predicted LF image, for each pixel: a reference image that is
+// decoded before it and is not kept, and the squares of mosaics.
+constexpr size_t kDecodePredictedBytesPerPixel = 12;
 // Upper bound of the lens weights of one lens, which FrameWeights keeps for each LF camera around
 // it: nodes (selection/lens_weights/frame_weights.h) and their bytes.
 constexpr size_t kMostWeightNodes = 48 * 48;
-constexpr size_t kTileBytes = kMiB;  // sums of the tile that one thread works on
+constexpr size_t kReferenceShare = 3;  // reference images get at most this part of free memory
+constexpr size_t kTileBytes = kMiB;    // sums of the tile that one thread works on
 
 // Limits of the number of LF images in a batch (PlanMemory()). In a batch that reaches them, adding
 // the tiles to the plates and waiting for the last task take little time compared with collecting
@@ -93,12 +97,38 @@ ImageNeed NeedOf(const LightField& light_field, Estimator estimator, int plate_w
   return need;
 }
 
+// Number of LF images of a group (selection/reference_groups.h), about six of which are reference
+// images.
+constexpr uint64_t kGroupImages = 16;
+// Number of groups whose reference images are in use at once for each thread in the order kGroups,
+// because two groups follow each other.
+constexpr uint64_t kGroupsInUse = 2;
+
+// Memory for reference images.
+struct ReferenceRoom {
+  size_t least = 0;   // of those of a group for each thread
+  size_t enough = 0;  // more would gain nothing
+};
+
+ReferenceRoom RoomFor(const ReferenceNeed& references, size_t image_count, int thread_count) {
+  const uint64_t all = references.all_bytes;
+  const auto of_groups = [&](uint64_t count) {
+    // Divides first, because the product may be too large for 64 bits.
+    const uint64_t group = all / std::max<size_t>(1, image_count) * kGroupImages;
+    return static_cast<size_t>(std::min(all, count * group));
+  };
+  const auto threads = static_cast<uint64_t>(thread_count);
+  return {of_groups(threads),
+          references.in_groups ? of_groups(kGroupsInUse * threads) : static_cast<size_t>(all)};
+}
+
 }  // namespace
 
 Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field,
                               const RayReading& reading, int plate_width, int plate_height,
                               size_t frame_count, int thread_count, size_t bytes_per_frame,
-                              bool is_guarded, size_t instants, const FocalSurface* surface) {
+                              bool is_guarded, size_t instants, const FocalSurface* surface,
+                              const ReferenceNeed& references) {
   const size_t element_count = static_cast<size_t>(plate_width) * plate_height;
   const ImageNeed need = NeedOf(light_field, reading.estimator, plate_width, plate_height,
                                 is_guarded, instants, surface);
@@ -115,7 +145,9 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
       kProgramBytes + SharedPictureBytes(light_field) +
       light_field.size() * (sizeof(LfCamera) + 128) +
       element_count * (develop_bytes + sheet_pictures * kSheetBytesPerElement) +
-      static_cast<size_t>(thread_count) * (need.decode_bytes + kTileBytes);
+      static_cast<size_t>(thread_count) *
+          (need.decode_bytes + kTileBytes +
+           (references.all_bytes > 0 ? need.pixels * kDecodePredictedBytesPerPixel : 0));
   // Memory for one LF image in each of the two batches, for its filtered copy in one of them, and
   // for one plan.
   const size_t copies = reading.Prefilters() ? (instants > 1 ? 4 : 3) : 2;
@@ -123,14 +155,25 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
   const size_t weights_bytes =
       std::min(light_field.size() * kMostWeightNodes, FrameWeights::kMostShares) * sizeof(uint16_t);
   const size_t frame_bytes = plan.plate_bytes + bytes_per_frame + (instants - 1) * weights_bytes;
-  const size_t least = set_aside + frame_bytes + pair_bytes;
+  const ReferenceRoom room = RoomFor(references, light_field.size(), thread_count);
+  const size_t least = set_aside + room.least + frame_bytes + pair_bytes;
   if (memory_bytes < least)
-    return OutputError(
-        fmt::format("{{memory {}}} is too small: the sums of a frame of {} x {} elements and two "
-                    "LF images need at least {} MiB",
-                    ByteText(memory_bytes), plate_width, plate_height, least / kMiB + 1));
+    return OutputError(fmt::format(
+        "{{memory {}}} is too small: the sums of a frame of {} x {} elements{} two LF images{} "
+        "need at least {} MiB",
+        ByteText(memory_bytes), plate_width, plate_height, room.least > 0 ? "," : " and",
+        room.least > 0 ? " and the reference images from which they are predicted" : "",
+        least / kMiB + 1));
 
-  const size_t free_bytes = memory_bytes - set_aside;
+  if (room.enough > 0) {
+    const size_t others = frame_bytes + static_cast<size_t>(thread_count) * pair_bytes;
+    const size_t all_free = memory_bytes - set_aside;
+    plan.reference_bytes =
+        std::clamp(std::min(all_free / kReferenceShare, all_free - std::min(all_free, others)),
+                   room.least, room.enough);
+    plan.enough_bytes = set_aside + std::max(kReferenceShare * room.enough, room.enough + others);
+  }
+  const size_t free_bytes = memory_bytes - set_aside - plan.reference_bytes;
   const size_t enough =
       std::max({std::min(kEnoughBatchImages, frame_count * kBatchBytesPerFrame / need.kept_bytes),
                 static_cast<size_t>(thread_count),
@@ -151,7 +194,8 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
   plan.frames_per_pass =
       std::clamp<size_t>(plates_bytes / frame_bytes, 1, std::max<size_t>(1, frame_count));
   plan.batches_bytes = images_bytes;
-  plan.total_bytes = set_aside + images_bytes + plan.frames_per_pass * frame_bytes;
+  plan.total_bytes =
+      set_aside + plan.reference_bytes + images_bytes + plan.frames_per_pass * frame_bytes;
   return plan;
 }
 

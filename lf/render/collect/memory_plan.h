@@ -1,14 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// Divides the memory of a render (--memory) between plates and LF images.
+// Divides the memory of a render (--memory) between plates, LF images and their reference images.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "lf/core/result.h"
 #include "lf/light_field/model/light_field.h"
 #include "lf/render/collect/collect_batch.h"
 
 namespace lf {
+
+// Memory that the decoded reference images of predicted LF images take.
+struct ReferenceNeed {
+  uint64_t all_bytes = 0;  // LfImageStore::ReferenceBytes(); 0: no LF image is predicted
+  // LF images are loaded group after group (ImageOrder::kGroups), so that the reference images of
+  // few groups suffice.
+  bool in_groups = false;
+};
 
 struct MemoryPlan {
   // number of frames whose plates are in memory at the same time; the frames of each pass read the
@@ -23,6 +32,11 @@ struct MemoryPlan {
   // Memory for two batches, for filtered copies of the LF images of one, and for their plans.
   size_t batches_bytes = 0;
   size_t plate_bytes = 0;  // size of the plate of one frame
+  // Memory for decoded reference images (LfImageStore::LimitReferences()).
+  size_t reference_bytes = 0;
+  // The least memory_bytes for which reference_bytes is as much as pays: all reference images, or
+  // those of a few groups with ReferenceNeed::in_groups. 0 if no LF image is predicted.
+  size_t enough_bytes = 0;
   size_t total_bytes = 0;  // largest memory of the program; includes all of the above
 };
 
@@ -43,10 +57,16 @@ struct MemoryPlan {
 //                    second filtered copy of each LF image, because elements may become wider than
 //                    the next step of the filters while a frame is exposed; a fast zoom needs more
 //   surface          the focal surface with the most rows of pieces; null: there is none
+//   references       what reference images take. They get all of it, but at most a third of what
+//                    remains after the memory that is first set aside, and no more than leaves room
+//                    for a plate and, in each of two batches, an LF image for each thread. They get
+//                    at least what those of a group for each thread take: kOutput if this does
+//                    not fit.
 Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field,
                               const RayReading& reading, int plate_width, int plate_height,
                               size_t frame_count, int thread_count, size_t bytes_per_frame = 0,
                               bool is_guarded = false, size_t instants = 1,
-                              const FocalSurface* surface = nullptr);
+                              const FocalSurface* surface = nullptr,
+                              const ReferenceNeed& references = {});
 
 }  // namespace lf

@@ -128,5 +128,99 @@ TEST(MemoryPlan, FurtherInstantsNeedPlansAndWeights) {
   }
 }
 
+constexpr ReferenceNeed References(size_t mib, bool in_groups = false) {
+  return {uint64_t{mib} * kMiB, in_groups};
+}
+
+Result<MemoryPlan> PlanWith(size_t memory_mib, const ReferenceNeed& references, size_t frames = 900,
+                            int threads = 2) {
+  return PlanMemory(memory_mib * kMiB, Field(960, 640), Estimator::kNearest, 1920, 1080, frames,
+                    threads, 0, false, 1, nullptr, references);
+}
+
+TEST(MemoryPlan, ReferenceImagesGetAtMostAThirdOfFreeMemory) {
+  const MemoryPlan without = *PlanWith(4096, {});
+  EXPECT_EQ(without.reference_bytes, 0u);
+  EXPECT_EQ(without.enough_bytes, 0u);
+  const MemoryPlan all = *PlanWith(4096, References(100));
+  EXPECT_EQ(all.reference_bytes, 100 * kMiB);
+  EXPECT_LE(all.enough_bytes, 4096 * kMiB);
+  const MemoryPlan some = *PlanWith(4096, References(3000));
+  EXPECT_GT(some.reference_bytes, 1200 * kMiB);
+  EXPECT_LT(some.reference_bytes, 4096 * kMiB / 3);
+  EXPECT_LT(some.frames_per_pass, without.frames_per_pass);
+  EXPECT_GT(some.frames_per_pass, without.frames_per_pass / 2);
+}
+
+TEST(MemoryPlan, ReferenceImagesLeaveRoomForAPlateAndTwoBatches) {
+  size_t before = 0, passes_before = 0;
+  for (size_t mib = 180; mib < 6000; mib += 20) {
+    const Result<MemoryPlan> plan = PlanWith(mib, References(900));
+    if (!plan) {
+      EXPECT_EQ(before, 0u) << mib;
+      continue;
+    }
+    EXPECT_LE(plan->total_bytes, mib * kMiB);
+    EXPECT_GE(plan->batch_image_count, 1u);
+    EXPECT_GE(plan->reference_bytes, before) << mib;
+    EXPECT_GE(plan->frames_per_pass, passes_before) << mib;
+    before = plan->reference_bytes;
+    passes_before = plan->frames_per_pass;
+  }
+  EXPECT_EQ(before, 900 * kMiB);
+}
+
+// Large LF images and many threads: a third of the free memory would be too much.
+TEST(MemoryPlan, ReferenceImagesLeaveTwoBatchesAnImageForEachThread) {
+  size_t tried = 0;
+  for (size_t mib = 10000; mib < 40000; mib += 500) {
+    const Result<MemoryPlan> plan =
+        PlanMemory(mib * kMiB, Field(6000, 4000), Estimator::kNearest, 240, 160, 1, 16, 0, false, 1,
+                   nullptr, References(20000));
+    if (!plan) continue;
+    const size_t least = size_t{16} * 16 * (20000 * kMiB / 1000);  // of a group for each thread
+    EXPECT_GE(plan->reference_bytes, least - kMiB) << mib;
+    if (plan->reference_bytes < least + kMiB) continue;
+    ++tried;
+    EXPECT_GE(mib * kMiB - plan->reference_bytes, plan->plate_bytes + 2 * 16 * plan->image_bytes);
+  }
+  EXPECT_GT(tried, 10u);
+}
+
+TEST(MemoryPlan, NamesTheMemoryThatKeepsAllReferenceImages) {
+  for (const bool in_groups : {false, true})
+    for (const size_t mib : {50, 900, 20000}) {
+      const ReferenceNeed references = References(mib, in_groups);
+      const size_t enough = PlanWith(2048, references)->enough_bytes / kMiB + 1;
+      const MemoryPlan plan = *PlanWith(enough, references);
+      const size_t wanted = in_groups ? plan.reference_bytes : references.all_bytes;
+      EXPECT_EQ(plan.reference_bytes, wanted) << mib;
+      EXPECT_EQ(PlanWith(2 * enough, references)->reference_bytes, wanted) << mib;
+      EXPECT_LT(PlanWith(enough - 2, references)->reference_bytes, wanted) << mib;
+    }
+}
+
+// In the order of groups, the reference images of two groups for each thread suffice: those of 64
+// of 1000 LF images.
+TEST(MemoryPlan, GroupsNeedFewReferenceImages) {
+  const MemoryPlan plan = *PlanWith(4096, References(2000, true));
+  EXPECT_NEAR(static_cast<double>(plan.reference_bytes), 64 * 2.0 * kMiB, kMiB);
+  EXPECT_GT(plan.frames_per_pass, PlanWith(4096, References(2000))->frames_per_pass);
+}
+
+TEST(MemoryPlan, TheLeastMemoryCountsReferenceImages) {
+  const Result<MemoryPlan> plan = PlanWith(100, References(3000), 1);
+  ASSERT_FALSE(plan);
+  const std::string& message = plan.error().message;
+  EXPECT_NE(message.find("reference images"), std::string::npos) << message;
+  const size_t least = std::stoul(message.substr(message.find("at least ") + 9));
+  EXPECT_FALSE(PlanWith(least - 1, References(3000), 1));
+  ASSERT_TRUE(PlanWith(least, References(3000), 1));
+  // The reference images of 32 of 1000 LF images are kept, 16 for each thread.
+  EXPECT_NEAR(static_cast<double>(PlanWith(least, References(3000), 1)->reference_bytes),
+              32 * 3.0 * kMiB, kMiB);
+  EXPECT_TRUE(PlanWith(least - 90, {}, 1));
+}
+
 }  // namespace
 }  // namespace lf

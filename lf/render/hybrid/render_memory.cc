@@ -30,19 +30,28 @@ Result<void> SetAsideForRays(size_t memory_bytes, RenderMode mode, size_t max_ce
       fewer_fit ? ", or reduce {max_rays}" : ""));
 }
 
+// Returns the least memory of which plan_bytes are left beside the rebinned rays.
+size_t MemoryFor(size_t plan_bytes, RenderMode mode, size_t max_cells) {
+  if (plan_bytes == 0 || !Rebins(mode)) return plan_bytes;
+  if (max_cells > 0) return plan_bytes + RebinnedRays::BytesOf(max_cells);
+  return mode == RenderMode::kRebin ? 2 * plan_bytes : plan_bytes + (plan_bytes + 2) / 3;
+}
+
 }  // namespace
 
 Result<RenderMemory> PlanRenderMemory(size_t memory_bytes, RenderMode mode, size_t max_cells,
                                       const LightField& light_field, const RayReading& reading,
                                       int plate_width, int plate_height, size_t frame_count,
                                       int thread_count, size_t measured_bytes, bool is_guarded,
-                                      size_t instants, const FocalSurface* surface) {
+                                      size_t instants, const FocalSurface* surface,
+                                      const ReferenceNeed& references) {
   RenderMemory memory;
   const bool has_plates = Collects(mode) || measured_bytes > 0;
   if (Rebins(mode)) LF_RETURN_IF_ERROR(SetAsideForRays(memory_bytes, mode, max_cells, &memory));
-  const Result<MemoryPlan> plan = PlanMemory(
-      memory_bytes - memory.rebin_bytes, light_field, reading, plate_width, plate_height,
-      has_plates ? frame_count : 1, thread_count, measured_bytes, is_guarded, instants, surface);
+  const Result<MemoryPlan> plan =
+      PlanMemory(memory_bytes - memory.rebin_bytes, light_field, reading, plate_width, plate_height,
+                 has_plates ? frame_count : 1, thread_count, measured_bytes, is_guarded, instants,
+                 surface, references);
   if (!plan && memory.rebin_bytes > 0)
     return Error{plan.error().kind,
                  fmt::format("{} (in addition to {} MiB for {} rebinned rays: increase {{memory}}, "
@@ -50,6 +59,7 @@ Result<RenderMemory> PlanRenderMemory(size_t memory_bytes, RenderMode mode, size
                              plan.error().message, memory.rebin_bytes >> 20, memory.max_cells)};
   if (!plan) return plan.error();
   memory.plan = *plan;
+  memory.enough_bytes = MemoryFor(plan->enough_bytes, mode, max_cells);
   // With kRebin, which rays are kept depends on the frames of a pass, but must not depend on
   // whether noise is measured. If noise is not measured, all frames are in one pass. If it is
   // measured, all frames must therefore fit in one pass.

@@ -17,6 +17,9 @@ struct RenderMemory {
   MemoryPlan plan;
   size_t max_cells = 0;    // largest number of rebinned rays; 0 if the mode is kCollect
   size_t rebin_bytes = 0;  // memory of the rebinned rays, in addition to plan.total_bytes
+  // The least memory_bytes for which all reference images are kept that pay
+  // (MemoryPlan::enough_bytes); 0 if no LF image is predicted.
+  size_t enough_bytes = 0;
 };
 
 // Plans the memory of a render.
@@ -27,6 +30,7 @@ struct RenderMemory {
 //                   to its plate; 0 if noise is not measured. With kRebin, frames have plates only
 //                   if this is above 0.
 //   instants        number of lenses of each frame; 1 unless the mode is kCollect
+//   references      as for PlanMemory(); in every mode, LF images are read in the film's order
 // kOutput: the memory does not suffice for max_cells rebinned rays (at least
 // RebinnedRays::kLeastCells), for one frame, or, with kRebin and plates, for all frames. The
 // message says what takes how much memory.
@@ -35,6 +39,7 @@ Result<RenderMemory> PlanRenderMemory(size_t memory_bytes, RenderMode mode, size
                                       int plate_width, int plate_height, size_t frame_count,
                                       int thread_count, size_t measured_bytes = 0,
                                       bool is_guarded = false, size_t instants = 1,
-                                      const FocalSurface* surface = nullptr);
+                                      const FocalSurface* surface = nullptr,
+                                      const ReferenceNeed& references = {});
 
 }  // namespace lf

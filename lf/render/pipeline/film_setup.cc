@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "lf/core/byte_text.h"
 #include "lf/light_field/model/radiance.h"
 #include "lf/render/collect/noise_moments.h"
 #include "lf/render/hybrid/frame_sampling.h"
@@ -51,17 +52,21 @@ FilmSetup::FilmSetup(Package package, const FilmSettings& film, const WorkSettin
 
 Result<std::unique_ptr<FilmSetup>> FilmSetup::Make(Package package, const FilmSettings& film,
                                                    const WorkSettings& work,
-                                                   std::vector<FrameId> frames, ThreadPool& pool) {
+                                                   std::vector<FrameId> frames, ThreadPool& pool,
+                                                   std::unique_ptr<LfImageStore> store) {
   const FilmSettings resolved = Resolved(film, package);
   LF_RETURN_IF_ERROR(CheckFilmSettings(package, resolved, frames));
   std::unique_ptr<FilmSetup> setup(
       new FilmSetup(std::move(package), resolved, work, std::move(frames), pool));
-  LF_ASSIGN_OR_RETURN(
-      setup->store_,
-      OpenStore(
-          setup->light_field(),
-          film.reading.estimator == Estimator::kBilinear ? Mosaics::kToRgb : Mosaics::kAsRecorded,
-          resolved.guard ? StoreContent::kPixelsAndDepths : StoreContent::kPixels));
+  setup->store_ = std::move(store);
+  if (!setup->store_) {
+    LF_ASSIGN_OR_RETURN(
+        setup->store_,
+        OpenStore(
+            setup->light_field(),
+            film.reading.estimator == Estimator::kBilinear ? Mosaics::kToRgb : Mosaics::kAsRecorded,
+            resolved.guard ? StoreContent::kPixelsAndDepths : StoreContent::kPixels));
+  }
   setup->film_.guard = setup->store_->LoadsDepths();
   LF_RETURN_IF_ERROR(WarnOfOtherFilm(setup->package(), setup->film()));
   LF_RETURN_IF_ERROR(setup->CheckStore());
@@ -99,10 +104,33 @@ Result<void> FilmSetup::PlanMemory() {
                        film_.reading, plate.width_px, plate.height_px, frames_.size(),
                        pool_.thread_count(), film_.MeasuresNoise() ? NoiseMoments::kMostBytes : 0,
                        is_guarded(), static_cast<size_t>(path().shutter.samples),
-                       LargestSurface(path(), frames_)));
+                       LargestSurface(path(), frames_), References()));
   plan_ = memory.plan;
   max_cells_ = memory.max_cells;
+  enough_bytes_ = memory.enough_bytes;
+  if (store_->ReferenceBytes() > 0) store_->LimitReferences(plan_.reference_bytes);
   return {};
+}
+
+ReferenceNeed FilmSetup::References() const {
+  return {store_->ReferenceBytes(), film_.order == ImageOrder::kGroups};
+}
+
+std::string FilmSetup::ReferenceNote() const {
+  const ReferenceNeed references = References();
+  if (references.in_groups || plan_.reference_bytes >= references.all_bytes) return "";
+  constexpr size_t kMiB = size_t{1} << 20;
+  // With another order, a frame that does not take all its LF images is another frame, and so is a
+  // shard.
+  const bool is_whole = !film_.max_image_count && !film_.HasStopRule() && !film_.shard;
+  return fmt::format(
+      "LF images are predicted from reference images, which take {} decoded; {{memory {}}} keeps "
+      "{} of them, so that LF images are decoded several times: give {{memory {}M}}{}",
+      ByteText(references.all_bytes), ByteText(work_.memory_bytes), ByteText(plan_.reference_bytes),
+      (enough_bytes_ + kMiB - 1) / kMiB,
+      !is_whole               ? ""
+      : package_.name.empty() ? ", or {order groups}"
+                              : ", or make the packages with {lfpreprocessor order groups}");
 }
 
 NeedsOptions FilmSetup::Needs() const {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "lf/core/ids.h"
@@ -24,11 +25,13 @@ namespace lf {
 
 class FilmSetup {
  public:
-  // Resolves the options, opens the LF images and plans the memory. With kBilinear, also makes room
+  // Resolves the options, opens the LF images, plans the memory, and tells the store how much of it
+  // is for reference images. With kBilinear, also makes room
   // in the radiance encoding for values below black (with prefilters also for values above white),
   // and measures the footprint of LF pixels (MeasureFootprint()) if the filter needs it and neither
   // the options nor the light field state it. The pool must outlive the object.
   //   frames  some frames of the package, ascending; empty: all of its frames
+  //   store   loads the LF images instead of the store that OpenStore() would open, if not null
   // kUsage: the options are not compatible with each other or with the package.
   // kInput: the packed store cannot be opened, or lacks pixels that a frame needs (CheckKept() of
   // render/needs/frame_needs.h).
@@ -36,7 +39,8 @@ class FilmSetup {
   // read an LF image because the machine lacks something.
   static Result<std::unique_ptr<FilmSetup>> Make(Package package, const FilmSettings& film,
                                                  const WorkSettings& work,
-                                                 std::vector<FrameId> frames, ThreadPool& pool);
+                                                 std::vector<FrameId> frames, ThreadPool& pool,
+                                                 std::unique_ptr<LfImageStore> store = nullptr);
 
   const Package& package() const { return package_; }
   const LightField& light_field() const { return package_.light_field; }
@@ -48,6 +52,14 @@ class FilmSetup {
   const ImageIndex& index() const { return index_; }
   const LfImageStore& store() const { return *store_; }
   const MemoryPlan& plan() const { return plan_; }
+  // Returns what the reference images of predicted LF images take.
+  ReferenceNeed References() const;
+  // Returns what reference images take, what of it `plan()` keeps, and how each LF image is decoded
+  // about once; "" if it is so already, or if no LF image is predicted.
+  std::string ReferenceNote() const;
+  // Sets the memory for reference images that are kept, instead of plan().reference_bytes. Not
+  // while LF images are loaded.
+  void LimitReferences(size_t most_bytes) { store_->LimitReferences(most_bytes); }
   // True if the plates are guarded, as a densified light field allows (Resolved()).
   bool is_guarded() const { return film_.guard; }
   // The largest number of cells of rebinned rays; 0 if the mode has none.
@@ -78,6 +90,7 @@ class FilmSetup {
   const ImageIndex index_;
   std::unique_ptr<LfImageStore> store_;
   MemoryPlan plan_;
+  size_t enough_bytes_ = 0;  // RenderMemory::enough_bytes
   size_t max_cells_ = 0;
   std::optional<FilmSlabs> slabs_;
 };

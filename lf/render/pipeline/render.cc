@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "lf/collection/simd_target.h"
+#include "lf/core/byte_text.h"
 #include "lf/core/file.h"
 #include "lf/core/log.h"
 #include "lf/film/develop/video.h"
@@ -150,6 +151,8 @@ Result<void> Renderer::Begin(Package package) {
   totals_.has_masks =
       !light_field.mask_names.empty() || light_field.encoding.alpha == AlphaMeaning::kMask;
   done_.frame_total = setup_->frames().size();
+  if (options_.source == nullptr)
+    if (const std::string note = setup_->ReferenceNote(); !note.empty()) LogInfo("{}", note);
   TellPlan();
   return {};
 }
@@ -194,6 +197,9 @@ void Renderer::TellPlan() const {
       plan.total_bytes >> 20, setup_->work().memory_bytes >> 20, plan.frames_per_pass,
       setup_->frames().size(), plan.plate_bytes >> 10, plan.batch_image_count,
       plan.image_bytes >> 10, plan.plan_bytes >> 20, setup_->max_cells());
+  if (const ReferenceNeed references = setup_->References(); references.all_bytes > 0)
+    LogDebug("memory: {} of {} for reference images", ByteText(plan.reference_bytes),
+             ByteText(references.all_bytes));
   LogDebug("state: {} frames are finished, {}; {} LF images were left out before",
            state_->finished().size(), had_plates_ ? "others are begun" : "none is begun",
            totals_.skipped.size());

@@ -153,12 +153,11 @@ void AddQualityRows(std::vector<Setting>& rows) {
       LF_MEMBER(order),
       Named({ImageOrder::kSpread, ImageOrder::kShuffle, ImageOrder::kRoundRobin, ImageOrder::kArea,
              ImageOrder::kGroups})));
-  rows.push_back(
-      Plain({.key = "seed",
-             .is_in_packages = true,
-             .placeholder = "N",
-             .text = "Seed of {order} and {kept edges}"},
-            LF_MEMBER(seed)));
+  rows.push_back(Plain({.key = "seed",
+                        .is_in_packages = true,
+                        .placeholder = "N",
+                        .text = "Seed of {order} and {kept edges}"},
+                       LF_MEMBER(seed)));
   rows.push_back(Rule(
       {.key = "stop_when",
        .placeholder = "RULE",
