@@ -79,9 +79,8 @@ class Preprocessor {
   Result<void> ForecastFrames();
   Result<void> DescribeSurroundings(const std::map<FrameId, FrameSampling>& sampling);
   Result<void> Measure();
-  Result<RenderMemory> MemoryOf(const LightField& light_field, size_t frame_count,
-                                uint64_t reference_bytes) const;
-  Result<uint64_t> ReferenceBytesOf(const Package& package) const;
+  Result<RenderMemory> MemoryOf(const LightField& light_field, size_t frame_count) const;
+  bool IsInGroups() const { return film_.order == ImageOrder::kGroups; }
   Result<std::vector<Section>> Split() const;
   Result<void> MakePackage(size_t number, const Section& section, size_t count);
   Package PackageOf(const Section& section, const Gathering& gathering) const;
@@ -272,11 +271,10 @@ Result<void> Preprocessor::Measure() {
     return report_.frames[a].ray_count < report_.frames[b].ray_count;
   });
   const FrameId frame = frames_[by_rays[by_rays.size() / 2]];
-  LF_ASSIGN_OR_RETURN(const RenderMemory memory,
-                      MemoryOf(light_field_, frames_.size(), store_->ReferenceBytes()));
+  LF_ASSIGN_OR_RETURN(const RenderMemory memory, MemoryOf(light_field_, frames_.size()));
   const Result<RenderRate> rate =
       MeasureRate(*index_, path_.Camera(frame), path_.Instants(frame).size(), needs_, film_.reading,
-                  {memory.plan.reference_bytes, film_.order == ImageOrder::kGroups}, pool_);
+                  {memory.plan.reference_bytes, IsInGroups()}, pool_);
   if (rate)
     report_.rate = *rate;
   else
@@ -284,25 +282,17 @@ Result<void> Preprocessor::Measure() {
   return {};
 }
 
-Result<RenderMemory> Preprocessor::MemoryOf(const LightField& light_field, size_t frame_count,
-                                            uint64_t reference_bytes) const {
+Result<RenderMemory> Preprocessor::MemoryOf(const LightField& light_field,
+                                            size_t frame_count) const {
   const Intrinsics& plate = path_.Camera(frames_.front()).pinhole.intrinsics;
   return PlanRenderMemory(options_.memory_bytes, film_.mode, 0, light_field, film_.reading,
                           plate.width_px, plate.height_px, frame_count, pool_.thread_count(), 0,
                           needs_.guard, static_cast<size_t>(path_.shutter.samples), nullptr,
-                          {reference_bytes, film_.order == ImageOrder::kGroups});
-}
-
-// Returns LfImageStore::ReferenceBytes() of the store of a package's LF images.
-Result<uint64_t> Preprocessor::ReferenceBytesOf(const Package& package) const {
-  if (store_->ReferenceBytes() == 0) return uint64_t{0};
-  LF_ASSIGN_OR_RETURN(const auto store, OpenStore(package.light_field, Mosaics::kToRgb));
-  return store->ReferenceBytes();
+                          ReferenceNeedOf(*store_, light_field, IsInGroups()));
 }
 
 Result<std::vector<Section>> Preprocessor::Split() const {
-  LF_ASSIGN_OR_RETURN(const RenderMemory memory,
-                      MemoryOf(light_field_, frames_.size(), store_->ReferenceBytes()));
+  LF_ASSIGN_OR_RETURN(const RenderMemory memory, MemoryOf(light_field_, frames_.size()));
   std::vector<uint64_t> costs;
   for (const FrameForecast& frame : report_.frames)
     costs.push_back(options_.balance == PackageBalance::kRays ? frame.ray_count : 1);
@@ -450,9 +440,7 @@ Result<void> Preprocessor::Forecast(const Package& package, PackageForecast* for
   }
   read.count = forecast->image_count + forecast->virtual_count;
   const size_t frame_count = package.frames.size();
-  LF_ASSIGN_OR_RETURN(const uint64_t reference_bytes, ReferenceBytesOf(package));
-  LF_ASSIGN_OR_RETURN(const RenderMemory memory,
-                      MemoryOf(package.light_field, frame_count, reference_bytes));
+  LF_ASSIGN_OR_RETURN(const RenderMemory memory, MemoryOf(package.light_field, frame_count));
   const size_t per_pass = std::min(memory.plan.frames_per_pass, frame_count);
   forecast->pass_count = (frame_count + per_pass - 1) / per_pass;
   RebinCost cost;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <vector>
 
 #include "lf/core/byte_text.h"
 #include "lf/film/plate/sensor_plate.h"
@@ -36,9 +37,10 @@ constexpr size_t kMostSheetPictures = 12;
 // decoder's own memory. The second number is for float files.
 constexpr size_t kDecodeBytesPerPixel = 16;
 constexpr size_t kDecodeFloatBytesPerPixel = 32;
-// Additional memory to decode a predicted LF image, for each pixel: a reference image that is
-// decoded before it and is not kept, and the squares of mosaics.
-constexpr size_t kDecodePredictedBytesPerPixel = 12;
+// Additional memory to decode a predicted LF image, for each pixel: reference images that are
+// decoded before it and are not kept, and the squares of mosaics.
+constexpr size_t kDecodePredictedBytesPerPixel = 18;
+constexpr size_t kReferenceTableBytes = 64;  // of a store with predicted LF images, for each of all
 // Upper bound of the lens weights of one lens, which FrameWeights keeps for each LF camera around
 // it: nodes (selection/lens_weights/frame_weights.h) and their bytes.
 constexpr size_t kMostWeightNodes = 48 * 48;
@@ -110,19 +112,42 @@ struct ReferenceRoom {
   size_t enough = 0;  // more would gain nothing
 };
 
-ReferenceRoom RoomFor(const ReferenceNeed& references, size_t image_count, int thread_count) {
+ReferenceRoom RoomFor(const ReferenceNeed& references, const LightField& light_field,
+                      int thread_count) {
   const uint64_t all = references.all_bytes;
+  const uint64_t mean = all / std::max<size_t>(1, light_field.size());
   const auto of_groups = [&](uint64_t count) {
-    // Divides first, because the product may be too large for 64 bits.
-    const uint64_t group = all / std::max<size_t>(1, image_count) * kGroupImages;
-    return static_cast<size_t>(std::min(all, count * group));
+    return static_cast<size_t>(std::min(all, count * mean * kGroupImages));
   };
   const auto threads = static_cast<uint64_t>(thread_count);
   return {of_groups(threads),
           references.in_groups ? of_groups(kGroupsInUse * threads) : static_cast<size_t>(all)};
 }
 
+// Returns the most bytes of the stored values of all LF images, which are not floats, as no
+// predicted LF image is.
+uint64_t MostStoredBytes(const LightField& light_field) {
+  const std::vector<Intrinsics>& intrinsics =
+      light_field.reduction ? light_field.reduction->recorded_intrinsics : light_field.intrinsics;
+  const BayerPattern bayer =
+      light_field.reduction ? light_field.reduction->recorded_bayer : light_field.encoding.bayer;
+  const uint64_t channels = bayer == BayerPattern::kNone ? 3 : 1;
+  uint64_t bytes = 0;
+  for (const LfCamera& camera : light_field.cameras) {
+    const Intrinsics& k = intrinsics[camera.intrinsics_index];
+    bytes += channels * sizeof(uint16_t) * static_cast<uint64_t>(k.width_px) *
+             static_cast<uint64_t>(k.height_px);
+  }
+  return bytes;
+}
+
 }  // namespace
+
+ReferenceNeed ReferenceNeedOf(const LfImageStore& store, const LightField& light_field,
+                              bool in_groups) {
+  const uint64_t all = store.ReferenceBytes();
+  return {all == 0 ? 0 : std::min(all, MostStoredBytes(light_field)), in_groups};
+}
 
 Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field,
                               const RayReading& reading, int plate_width, int plate_height,
@@ -144,6 +169,7 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
   const size_t set_aside =
       kProgramBytes + SharedPictureBytes(light_field) +
       light_field.size() * (sizeof(LfCamera) + 128) +
+      (references.all_bytes > 0 ? light_field.size() * kReferenceTableBytes : 0) +
       element_count * (develop_bytes + sheet_pictures * kSheetBytesPerElement) +
       static_cast<size_t>(thread_count) *
           (need.decode_bytes + kTileBytes +
@@ -155,7 +181,7 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
   const size_t weights_bytes =
       std::min(light_field.size() * kMostWeightNodes, FrameWeights::kMostShares) * sizeof(uint16_t);
   const size_t frame_bytes = plan.plate_bytes + bytes_per_frame + (instants - 1) * weights_bytes;
-  const ReferenceRoom room = RoomFor(references, light_field.size(), thread_count);
+  const ReferenceRoom room = RoomFor(references, light_field, thread_count);
   const size_t least = set_aside + room.least + frame_bytes + pair_bytes;
   if (memory_bytes < least)
     return OutputError(fmt::format(

@@ -8,16 +8,22 @@
 #include "lf/core/result.h"
 #include "lf/light_field/model/light_field.h"
 #include "lf/render/collect/collect_batch.h"
+#include "lf/storage/load/lf_image_store.h"
 
 namespace lf {
 
 // Memory that the decoded reference images of predicted LF images take.
 struct ReferenceNeed {
-  uint64_t all_bytes = 0;  // LfImageStore::ReferenceBytes(); 0: no LF image is predicted
+  uint64_t all_bytes = 0;  // of all of them together; 0: no LF image is predicted
   // LF images are loaded group after group (ImageOrder::kGroups), so that the reference images of
   // few groups suffice.
   bool in_groups = false;
 };
+
+// Returns LfImageStore::ReferenceBytes(), but no more than as many LF images as `light_field` has
+// can take, because a package has only some of the LF images of its store.
+ReferenceNeed ReferenceNeedOf(const LfImageStore& store, const LightField& light_field,
+                              bool in_groups);
 
 struct MemoryPlan {
   // number of frames whose plates are in memory at the same time; the frames of each pass read the

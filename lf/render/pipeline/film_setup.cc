@@ -113,7 +113,7 @@ Result<void> FilmSetup::PlanMemory() {
 }
 
 ReferenceNeed FilmSetup::References() const {
-  return {store_->ReferenceBytes(), film_.order == ImageOrder::kGroups};
+  return ReferenceNeedOf(*store_, light_field(), film_.order == ImageOrder::kGroups);
 }
 
 std::string FilmSetup::ReferenceNote() const {

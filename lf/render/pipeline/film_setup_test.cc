@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "lf/render/collect/test_noise_field.h"
+#include "lf/render/hybrid/rebinned_rays.h"
 #include "lf/render/pipeline/film_renderer.h"
 #include "lf/selection/reference_groups.h"
 
@@ -19,8 +20,8 @@ namespace lf {
 namespace {
 
 constexpr uint64_t kMiB = uint64_t{1} << 20;
-constexpr uint64_t kImageBytes = kMiB;             // as if LF images were larger
-constexpr uint64_t kEnough = 2048, kLittle = 100;  // sizes of memory, in MiB
+constexpr uint64_t kImageBytes = uint64_t{testing::kWidth} * testing::kHeight * 6;  // 16 bits
+constexpr uint64_t kEnough = 80, kLittle = 32;  // sizes of memory, in MiB
 
 // How a store was used, also after it is gone.
 struct Use {
@@ -163,7 +164,10 @@ TEST_F(FilmSetupTest, WithLittleMemoryGroupsAreDecodedOnceAndHaveTheSameFrames) 
 TEST_F(FilmSetupTest, TheNoteNamesMemoryThatSuffices) {
   for (const RenderMode mode : {RenderMode::kCollect, RenderMode::kHybrid, RenderMode::kRebin}) {
     film_.mode = mode;
-    const std::string note = Open(ImageOrder::kSpread, 800).value()->ReferenceNote();
+    if (film_.Rebins()) film_.rebin.max_cells = RebinnedRays::kLeastCells;
+    const uint64_t rays_mib =
+        film_.Rebins() ? RebinnedRays::BytesOf(RebinnedRays::kLeastCells) / kMiB + 1 : 0;
+    const std::string note = Open(ImageOrder::kSpread, kLittle + rays_mib).value()->ReferenceNote();
     EXPECT_NE(note.find("decoded several times"), std::string::npos) << note;
     EXPECT_NE(note.find("{order groups}"), std::string::npos) << note;
     const size_t at = note.find("give {memory ");
@@ -173,14 +177,26 @@ TEST_F(FilmSetupTest, TheNoteNamesMemoryThatSuffices) {
     EXPECT_NE(Open(ImageOrder::kSpread, mib - 2).value()->ReferenceNote(), "") << NameOf(mode);
   }
   film_.mode = RenderMode::kCollect;
+  film_.rebin.max_cells = 0;
   film_.max_image_count = 20;
   const std::string of_some = Open(ImageOrder::kSpread, kLittle).value()->ReferenceNote();
   EXPECT_NE(of_some, "");
   EXPECT_EQ(of_some.find("{order groups}"), std::string::npos) << of_some;
 }
 
+// A package has some of the LF images of a large store.
+TEST_F(FilmSetupTest, ReferenceImagesOfOtherPackagesGetNoRoom) {
+  class LargeStore : public testing::NoiseStore {
+    uint64_t ReferenceBytes() const override { return uint64_t{1} << 50; }
+  };
+  const LightField field = testing::NoiseField(24);
+  const ReferenceNeed need = ReferenceNeedOf(LargeStore(), field, false);
+  EXPECT_EQ(need.all_bytes, 576 * kImageBytes);
+  EXPECT_EQ(ReferenceNeedOf(testing::NoiseStore(), field, false).all_bytes, 0u);
+}
+
 TEST_F(FilmSetupTest, TooLittleMemoryIsRefused) {
-  const auto refused = Open(ImageOrder::kSpread, 30);
+  const auto refused = Open(ImageOrder::kSpread, 26);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().kind, ErrorKind::kOutput);
   EXPECT_NE(refused.error().message.find("reference images"), std::string::npos)
