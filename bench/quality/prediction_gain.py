@@ -32,6 +32,7 @@ import prediction_contexts as contexts
 import prediction_groups as groups
 import prediction_model as model
 import prediction_peers as peers
+from equal_quality import bytes_at
 from quality import results
 
 TODAY = (3, 7)  # thresholds; ways are compared where frames are as good as these make them
@@ -148,18 +149,6 @@ def disparities_of(capture, group):
     ends = np.percentile(groups.inverse_depths_of(capture, 64)[depth], (5, 95))
     moved = [(a @ middle + inverse * b) for inverse in ends]
     return sorted(float(middle[0] - at[0] / at[2]) * group.scale for at in moved)
-
-
-def bytes_at(points, target):
-    """Returns the bytes at this PSNR: the logarithm is interpolated between the two nearest of (dB, bytes), or
-    extrapolated by at most 3 dB; None if that is not enough."""
-    points = sorted(points)
-    decibels, logs = np.array([db for db, _ in points]), np.log([size for _, size in points])
-    if len(points) < 2 or not decibels[0] - 3 <= target <= decibels[-1] + 3:
-        return None
-    i = int(np.clip(np.searchsorted(decibels, target) - 1, 0, len(points) - 2))
-    slope = (logs[i + 1] - logs[i]) / (decibels[i + 1] - decibels[i])
-    return float(np.exp(logs[i] + slope * (target - decibels[i])))
 
 
 def shares_at(rows, today, coder, of="frame_db"):
