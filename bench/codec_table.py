@@ -40,6 +40,10 @@ THESIS = [(1, t) for t in (0.5, 1, 2, 4, 8, 16)] + [(2, t) for t in (0.5, 1, 2, 
          [(3, t) for t in (0.5, 1, 2, 4)]
 TABLE_5_3 = {(1, 2): 11.7, (1, 4): 13.7, (1, 8): 15.1, (2, 0.5): 7.5, (2, 2): 21.1, (2, 4): 30.6, (3, 4): 44.6}
 DEFAULT = (1, 1.5, 2, 3, 4, 6, 8, 12, 16)
+# Our own ways to encode, with and without a loss.
+OURS = {"default": ((), ("--profile", "lossless")),
+        "default, contexts": (("--entropy", "contexts"), ("--profile", "lossless", "--entropy", "contexts")),
+        "group": (("--profile", "group"), ("--profile", "group-lossless"))}
 
 
 def run(*words, **more):
@@ -265,12 +269,15 @@ def measure(content, with_peers):
                                                      256 if quantizer == "8bit" else quantizer)}
         rows.append(row)
         print(content.name, row, flush=True)
-    for threshold in DEFAULT:
-        row, _ = content.code("--threshold", threshold, and_by_defaults=True)
-        rows.append(row | {"profile": "default", "levels": 4, "threshold": threshold, "best": row["ratio"]})
-        print(content.name, rows[-1], flush=True)
-    row, _ = content.code("--profile", "lossless", and_by_defaults=True)
-    rows.append(row | {"profile": "lossless", "levels": 4, "threshold": None, "best": row["ratio"]})
+    for profile, (lossy, lossless) in OURS.items():
+        for threshold in DEFAULT:
+            row, _ = content.code(*lossy, "--threshold", threshold, and_by_defaults=True)
+            rows.append(row | {"profile": profile, "levels": 4, "threshold": threshold, "best": row["ratio"]})
+            print(content.name, rows[-1], flush=True)
+        row, _ = content.code(*lossless, and_by_defaults=True)
+        name = profile.replace("default", "lossless")
+        rows.append(row | {"profile": name + ("-lossless" if name == "group" else ""), "levels": 4, "threshold": None,
+                           "best": row["ratio"]})
     if with_peers:
         peers, lossless = peers_of(content)
         for name, coders in peers.items():
@@ -286,7 +293,8 @@ def measure(content, with_peers):
 
 
 def draw_artefacts(content, path):
-    """Draws a frame from the originals, by the thesis's scheme with two settings, and by the default."""
+    """Draws a frame from the originals, by the thesis's scheme with two settings, by the default, and in
+    groups of the same quality."""
     frames = [content.frames["none"][1]]
     for levels, threshold in ((1, 8), (2, 4)):
         row, coded = content.code("--profile", "thesis", "--levels", levels, "--threshold", threshold, "--quantizer",
@@ -296,6 +304,11 @@ def draw_artefacts(content, path):
     row, coded = content.code("--threshold", 8)
     frames.append(coded[1])
     print(f"default, threshold 8: {row['bytes']} bytes, {row['frame_psnr']:.1f} dB")
+    groups = [(threshold, *content.code("--profile", "group", "--threshold", threshold))
+              for threshold in (8, 9, 10, 11, 12, 14, 16)]
+    threshold, of_group, coded = min(groups, key=lambda group: abs(group[1]["frame_psnr"] - row["frame_psnr"]))
+    frames.append(coded[1])
+    print(f"group, threshold {threshold}: {of_group['bytes']} bytes, {of_group['frame_psnr']:.1f} dB")
     draw(frames, path)
 
 
@@ -324,16 +337,22 @@ def table_of(name, rows):
                      f"{row['bytes'] / 1e6:.2f} | {row['cpu_s']:.1f} | "
                      f"{number(row['psnr'])} | {number(row['frame_psnr'])} | "
                      f"{number(row['default_psnr']) if row.get('default_psnr') else ''} |")
-    thesis, ours = ([r for r in rows if r["profile"] == p] for p in ("thesis", "default"))
-    lines += ["", "| at equal PSNR | dB | thesis, best coder | default | default / thesis |" + "".join(
-        f" {p} |" for p in ("JPEG", "JPEG 2000", "JPEG XL")), "|" + " --- |" * 8]
+    thesis = [r for r in rows if r["profile"] == "thesis"]
+    ours = {p: [r for r in rows if r["profile"] == p] for p in OURS}
+    lines += ["", "| at equal PSNR | dB | thesis, best coder | default | default, contexts | group | default / thesis |"
+                  " group / thesis |" + "".join(f" {p} |" for p in ("JPEG", "JPEG 2000", "JPEG XL")),
+              "|" + " --- |" * 11]
     for key, what, targets in (("psnr", "of images", (40, 42.5, 45, 48)),
                                ("frame_psnr", "of frames", (45, 48, 50, 52))):
         for target in targets:
-            a, b = best_at(thesis, key, target), at(ours, key, target)
+            a = best_at(thesis, key, target)
+            by_profile = {p: at(ours[p], key, target) for p in OURS}
             others = [at([r for r in rows if r["profile"] == p], key, target) for p in ("JPEG", "JPEG 2000", "JPEG XL")]
-            lines.append(f"| {what} | {target} | {number(a, 2)} | {number(b, 2)} | "
-                         f"{number(b / a if a and b else None, 2)} |" + "".join(f" {number(o, 2)} |" for o in others))
+            lines.append(f"| {what} | {target} | {number(a, 2)} |" +
+                         "".join(f" {number(b, 2)} |" for b in by_profile.values()) +
+                         "".join(f" {number(b / a if a and b else None, 2)} |"
+                                 for b in (by_profile["default"], by_profile["group"])) +
+                         "".join(f" {number(o, 2)} |" for o in others))
     return "\n".join(lines) + "\n"
 
 

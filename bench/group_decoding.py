@@ -6,7 +6,8 @@ usage: bench/group_decoding.py BUILD_DIR [--only "CAPTURE;..."] [--size 960x640]
        bench/group_decoding.py --again JSON [--write doc/codec.md]
 
 BUILD_DIR is a build with LF_BENCH=ON, for lf_predicted_group. Each capture of lfsynth is a group of 4 x 4 LF images in
-8-bit RGB. lf_predicted_group encodes it relative to each other and tells the CPU time of decoding. The peer is HEVC:
+8-bit RGB. lf_predicted_group encodes it relative to each other, by contexts as `--profile group` does and packed, and tells the CPU
+time of decoding. The peer is HEVC:
 libx265 in ffmpeg, preset medium, 16 pictures of which the first is a key picture, in rows from left to right and from
 right to left in turn, with whole colours (yuv444p), and with halved ones (yuv420p) where these reach the PSNR. Its QP is
 the largest with which the PSNR of the RGB pictures is at least that of the group. ffmpeg decodes the file with one
@@ -115,9 +116,13 @@ def group_rows(build, field, near, far):
             for row in csv.DictReader(io.StringIO(text))}
 
 
-def group_cpu_s(row):
-    """Returns the CPU time of decoding a group: the key image takes that of an LF image that is encoded alone."""
-    return row["predicted decode s"] + row["alone decode s"] / (COUNT - 1)
+WAYS = {"group": "contexts", "packed": "predicted", "alone": "alone"}  # columns of lf_predicted_group
+
+
+def cpu_s(row, way):
+    """Returns the CPU time of decoding all LF images. The key image of a group takes that of an LF image that is
+    encoded alone."""
+    return row[f"{WAYS[way]} decode s"] + row["alone decode s"] / (COUNT - 1)
 
 
 def measure(build, names, size, runs, folder):
@@ -143,15 +148,15 @@ def measure(build, names, size, runs, folder):
         times = {}
         for _ in range(runs):
             for threshold, row in group_rows(build, field, near, far).items():
-                times.setdefault((threshold, "group"), []).append(group_cpu_s(row))
-                times.setdefault((threshold, "alone"), []).append(row["alone decode s"] * COUNT / (COUNT - 1))
+                for way in WAYS:
+                    times.setdefault((threshold, way), []).append(cpu_s(row, way))
             for key, (video, _) in videos.items():
                 times.setdefault(key, []).append(video.decode_cpu_s())
         pixels = COUNT * pictures[0].shape[0] * pictures[0].shape[1]
         for (threshold, way), seconds in times.items():
             found = videos[threshold, way][1] if (threshold, way) in videos else {}
             row = first[threshold]
-            words = {"group": "predicted", "alone": "alone"}.get(way)
+            words = WAYS.get(way)
             rows.append({"capture": name, "threshold": threshold, "way": way,
                          "bytes": row[f"{words} bytes"] if words else found["bytes"],
                          "db": (row[f"{words} dB"] if words else found["db"]) if threshold else None,
@@ -163,7 +168,7 @@ def measure(build, names, size, runs, folder):
 def table(record):
     lines = ["| capture | threshold | way | dB | bytes | decoding, ns of CPU per pixel | / group |",
              "|" + " --- |" * 7]
-    names = {"group": "group", "alone": "each alone", "yuv444p": "HEVC, yuv444p", "yuv420p": "HEVC, yuv420p"}
+    names = {"group": "group", "packed": "group, packed", "alone": "each alone, packed", "yuv444p": "HEVC, yuv444p", "yuv420p": "HEVC, yuv420p"}
     order = list(names)
     rows = sorted(record["rows"], key=lambda row: (list(CAPTURES).index(row["capture"]), row["threshold"],
                                                    order.index(row["way"])))

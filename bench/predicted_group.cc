@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // lf_predicted_group LIGHTFIELD COUNT NEAR FAR [BLOCK]: encodes a group of COUNT neighbouring LF
-// images of 8-bit RGB relative to each other (lf/pixels/codec/predicted_image.h) and each alone, at
-// equal thresholds, and compares bytes, errors and CPU times. The scene lies between the depths
+// images of 8-bit RGB relative to each other (lf/pixels/codec/predicted_image.h), packed and by
+// contexts, and each alone, packed, at equal thresholds. Compares bytes, errors and CPU times. The scene lies between the depths
 // NEAR and FAR, in world units. BLOCK is the side of blocks in pixels. Writes CSV to stdout.
 #include <algorithm>
 #include <cmath>
@@ -173,28 +173,38 @@ int main(int argc, char** argv) {
   const int block_px = argc > 5 ? std::atoi(argv[5]) : lf::PredictionSettings().block_px;
   std::puts(
       "threshold,alone bytes,alone dB,alone encode s,alone decode s,"
-      "predicted bytes,predicted dB,predicted encode s,predicted decode s");
+      "predicted bytes,predicted dB,predicted encode s,predicted decode s,"
+      "contexts bytes,contexts dB,contexts encode s,contexts decode s");
   for (const double threshold : {0.0, 3.0, 7.0}) {
     lf::CodecSettings settings;
     settings.threshold = threshold;
     if (threshold == 0) settings.profile = lf::CodecProfile::kLossless;
     // The first LF image is encoded alone in both ways, and left out of the times.
-    Cost first, alone, predicted;
+    Cost first, first_contexts, alone, predicted, contexts;
+    lf::CodecSettings by_contexts = settings;
+    by_contexts.entropy = lf::Entropy::kContexts;
     double values = 0;
     for (size_t i = 0; i < group.size(); ++i) {
       lf::DecodedPart decoded;
       EncodeAlone(group[i], settings, &decoded, i == 0 ? &first : &alone);
       values += static_cast<double>(std::get<lf::Image<uint8_t>>(decoded.pixels).pixels().size());
-      if (i == 0)
-        group[i].decoded = std::move(decoded);
-      else
-        EncodeFromOthers(group, i, settings, depths, block_px, &group[i].decoded, &predicted);
+      if (i == 0) {
+        EncodeAlone(group[i], by_contexts, &group[i].decoded, &first_contexts);
+        continue;
+      }
+      // Both ways give equal pixels.
+      EncodeFromOthers(group, i, by_contexts, depths, block_px, &group[i].decoded, &contexts);
+      EncodeFromOthers(group, i, settings, depths, block_px, &group[i].decoded, &predicted);
     }
     std::printf("%g", threshold);
-    for (const Cost& cost : {alone, predicted})
-      std::printf(",%.0f,%.2f,%.3f,%.3f", first.bytes + cost.bytes,
-                  10 * std::log10(255 * 255 * values / (first.squared_error + cost.squared_error)),
+    const auto print = [&](const Cost& key, const Cost& cost) {
+      std::printf(",%.0f,%.2f,%.3f,%.3f", key.bytes + cost.bytes,
+                  10 * std::log10(255 * 255 * values / (key.squared_error + cost.squared_error)),
                   cost.encode_s, cost.decode_s);
+    };
+    print(first, alone);
+    print(first, predicted);
+    print(first_contexts, contexts);
     std::puts("");
   }
   return 0;
