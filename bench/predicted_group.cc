@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // lf_predicted_group LIGHTFIELD COUNT NEAR FAR [BLOCK]: encodes a group of COUNT neighbouring LF
 // images of 8-bit RGB relative to each other (lf/pixels/codec/predicted_image.h), packed and by
-// contexts, and each alone, packed, at equal thresholds. Compares bytes, errors and CPU times. The scene lies between the depths
-// NEAR and FAR, in world units. BLOCK is the side of blocks in pixels. Writes CSV to stdout.
+// contexts, and each alone, packed, at equal thresholds. Compares bytes, errors and CPU times. The
+// scene lies between the depths NEAR and FAR, in world units. BLOCK is the side of blocks in
+// pixels. Writes CSV to stdout.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -44,6 +44,43 @@ void CopyPixels(const DecodedPart& from, const PixelRect& wanted, DecodedPart* t
 
 }  // namespace
 
+// Memory of decoded pixels that nobody uses now. LF images have similar sizes: memory that is
+// allocated and freed for each of them, between small pieces, took twice as much as is in use.
+class ReferenceCache::SpareParts : public std::enable_shared_from_this<SpareParts> {
+ public:
+  // Returns pixels to decode into, whose memory comes back here when the last pointer goes away.
+  std::shared_ptr<DecodedPart> Take() {
+    const auto give_back = [spares = shared_from_this()](DecodedPart* part) {
+      std::unique_ptr<DecodedPart> owned(part);
+      const std::lock_guard lock(spares->mutex_);
+      if (spares->parts_.size() < kMost) spares->parts_.push_back(std::move(owned));
+    };
+    std::unique_ptr<DecodedPart> part;
+    {
+      const std::lock_guard lock(mutex_);
+      if (!parts_.empty()) {
+        part = std::move(parts_.back());
+        parts_.pop_back();
+      }
+    }
+    if (!part) part = std::make_unique<DecodedPart>();
+    return {part.release(), give_back};
+  }
+
+ private:
+  static constexpr size_t kMost = 8;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<DecodedPart>> parts_;
+};
+
+ReferenceCache::ReferenceCache(std::filesystem::path store, BayerPattern bayer,
+                               ReferenceTable references, std::vector<PackedCode> codes)
+    : store_(std::move(store)),
+      bayer_(bayer),
+      references_(std::move(references)),
+      codes_(std::move(codes)),
+      spares_(std::make_shared<SpareParts>()) {}
+
 Result<std::unique_ptr<ReferenceCache>> ReferenceCache::Open(const std::filesystem::path& store,
                                                              BayerPattern bayer) {
   LF_ASSIGN_OR_RETURN(ReferenceTable references, ReadReferences(store));
@@ -97,7 +134,7 @@ Result<std::shared_ptr<const DecodedPart>> ReferenceCache::Whole(uint32_t id) {
   LF_ASSIGN_OR_RETURN(const std::string code, Read(id));
   LF_ASSIGN_OR_RETURN(Steps steps, Plan(id, code, whole));
   if (!IsReference(id)) {
-    auto decoded = std::make_shared<DecodedPart>();
+    std::shared_ptr<DecodedPart> decoded = spares_->Take();
     LF_RETURN_IF_ERROR(Run(&steps, decoded.get()));
     return Part(std::move(decoded));
   }
@@ -224,7 +261,7 @@ Result<ReferenceCache::Part> ReferenceCache::Obtain(const Step& step, const Step
   } announced{*this, lock, step.id, std::make_shared<Pending>()};
   pending_.emplace(step.id, announced.pending);
   lock.unlock();
-  auto decoded = std::make_shared<DecodedPart>();
+  std::shared_ptr<DecodedPart> decoded = spares_->Take();
   LF_RETURN_IF_ERROR(DecodeStep(step, steps, decoded.get()));
   lock.lock();
   ++decoded_count_;

@@ -88,12 +88,10 @@ class ReferenceCache {
     Part part;
   };
 
+  class SpareParts;
+
   ReferenceCache(std::filesystem::path store, BayerPattern bayer, ReferenceTable references,
-                 std::vector<PackedCode> codes)
-      : store_(std::move(store)),
-        bayer_(bayer),
-        references_(std::move(references)),
-        codes_(std::move(codes)) {}
+                 std::vector<PackedCode> codes);
 
   bool IsReference(uint32_t id) const { return references_.IsReference(id); }
   Result<std::string> Read(uint32_t id) const;
@@ -113,6 +111,7 @@ class ReferenceCache {
   const BayerPattern bayer_;
   const ReferenceTable references_;
   const std::vector<PackedCode> codes_;
+  const std::shared_ptr<SpareParts> spares_;
 
   mutable std::mutex mutex_;            // guards all members below
   std::condition_variable is_decoded_;  // notified when a Pending is done
