@@ -143,8 +143,7 @@ void EncodeFromOthers(const std::vector<GroupImage>& group, size_t index,
   std::string code;
   Timed(&cost->encode_s, [&] {
     code =
-        lf::EncodePredicted(image.pixels, lf::PixelLayout::kRgb, settings, references, {block_px})
-            .code;
+        lf::EncodePredicted(image.pixels, lf::PixelLayout::kRgb, settings, references, {block_px});
   });
   const auto& pixels = std::get<lf::Image<uint8_t>>(image.pixels);
   Timed(&cost->decode_s, [&] {

@@ -33,15 +33,6 @@ struct Reference {
   PlaneWarp warp;
 };
 
-struct PredictedCode {
-  std::string code;
-  // Mean magnitude of the difference between brightness and its prediction, and of the difference
-  // between neighbouring pixels' brightness, in the units of stored values. If the first is not
-  // clearly smaller, EncodeImage() gives a shorter encoded image for the same settings.
-  double mean_residual = 0;
-  double mean_detail = 0;
-};
-
 struct PredictionSettings {
   // Side of the blocks that have a depth each: 8, 16 or 32 pixels, and at least 16 for a mosaic.
   // Blocks of 8 pixels take 2 to 3 % fewer bytes than those of 16 and 1.2 times as long to decode.
@@ -51,9 +42,9 @@ struct PredictionSettings {
 // Returns the encoded image. Arguments are those of EncodeImage(), with these limits: the profile
 // is not kThesis, and width and height are at most kMostPredictedSide; for a mosaic, twice as much.
 //   references  1 to kMostReferences (predict.h); more than three hardly ever help
-PredictedCode EncodePredicted(const CodecPixels& pixels, PixelLayout layout,
-                              const CodecSettings& settings, std::span<const Reference> references,
-                              const PredictionSettings& prediction = {});
+std::string EncodePredicted(const CodecPixels& pixels, PixelLayout layout,
+                            const CodecSettings& settings, std::span<const Reference> references,
+                            const PredictionSettings& prediction = {});
 
 // Returns for each reference image the pixels that DecodePredicted() needs of it; empty if it needs
 // none. For a mosaic, rectangles begin and end at even columns and rows, and may extend beyond an

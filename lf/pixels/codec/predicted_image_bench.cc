@@ -52,8 +52,7 @@ void EncodeFromOthers(benchmark::State& state) {
   const BenchCase of = CaseOf(state);
   const std::vector<Reference> references = of.group.references();
   std::string code;
-  for (auto _ : state)
-    code = EncodePredicted(of.group.target, of.layout, of.settings, references).code;
+  for (auto _ : state) code = EncodePredicted(of.group.target, of.layout, of.settings, references);
   ReportPixels(state, code.size(), of);
 }
 
@@ -70,7 +69,7 @@ void DecodeFromOthers(benchmark::State& state) {
   const BenchCase of = CaseOf(state);
   const std::vector<const DecodedPart*> parts = of.group.parts();
   const std::string code =
-      EncodePredicted(of.group.target, of.layout, of.settings, of.group.references()).code;
+      EncodePredicted(of.group.target, of.layout, of.settings, of.group.references());
   DecodedPart part;
   for (auto _ : state)
     if (!DecodePredicted(code, parts, {0, 0, kWidth, kHeight}, &part))

@@ -220,7 +220,7 @@ Result<CodedImage> CodeFrom(const RecordedImage& image, const CodecSettings& set
                             const PredictionSettings& prediction,
                             const std::function<bool()>& is_interrupted) {
   LF_ASSIGN_OR_RETURN(CodedImage coded, MaskOf(image, is_interrupted));
-  coded.code = EncodePredicted(image.pixels, image.layout, settings, references, prediction).code;
+  coded.code = EncodePredicted(image.pixels, image.layout, settings, references, prediction);
   if (is_interrupted && is_interrupted()) return Error{ErrorKind::kInterrupted, "interrupted"};
   return coded;
 }

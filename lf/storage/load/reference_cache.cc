@@ -187,8 +187,16 @@ Result<void> ReferenceCache::PlanStep(size_t index, Steps* steps) {
                     "but the table of the store says {}; copy or make the store again",
                     info.reference_count, references.size()));
   if (references.empty()) return {};
-  LF_ASSIGN_OR_RETURN(const std::vector<PixelRect> needed,
-                      NeededOfReferences(step.code, step.wanted));
+  // All of an image needs nearly all of its reference images.
+  std::vector<PixelRect> needed;
+  if (step.wanted == PixelRect{0, 0, info.width, info.height}) {
+    for (const uint32_t reference : references) {
+      const PixelRect& rect = codes_[reference].rect;
+      needed.push_back({0, 0, rect.width(), rect.height()});
+    }
+  } else {
+    LF_ASSIGN_OR_RETURN(needed, NeededOfReferences(step.code, step.wanted));
+  }
   for (size_t r = 0; r < references.size(); ++r) {
     const auto of_reference = std::find_if(
         steps->begin(), steps->end(), [&](const Step& other) { return other.id == references[r]; });

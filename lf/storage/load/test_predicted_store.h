@@ -120,7 +120,7 @@ inline PredictedImages MakePredictedImages(const PredictedStoreKind& kind) {
     }
     coded.code = references.empty()
                      ? EncodeImage(pixels, kind.layout, settings)
-                     : EncodePredicted(pixels, kind.layout, settings, references, {}).code;
+                     : EncodePredicted(pixels, kind.layout, settings, references, {});
     LF_CHECK(DecodePredicted(coded.code, parts, coded.rect, &images.decoded[id]).has_value());
     if (kind.has_masks && id % 2 == 1) {
       Image<uint8_t> mask(kind.width, kind.height, 1, 255);
