@@ -49,9 +49,9 @@ struct ScaleTable {
   int most = 0;                     // largest symbol: the escape
   // Index: magnitude of a symbol. Each of the symbols m and -m has `count[m]` slots, those of m
   // from first[m] on, followed by those of -m.
-  std::array<uint16_t, kMostSymbol + 1> count, first;
+  std::array<uint16_t, kMostSymbol + 1> count{}, first{};
   // Bits that a symbol of this magnitude costs, in 1/256 bit.
-  std::array<uint16_t, kMostSymbol + 1> cost;
+  std::array<uint16_t, kMostSymbol + 1> cost{};
 };
 
 // The tables of all scales, and one more, kIdle: its symbol is always 0 and costs nothing.
