@@ -13,6 +13,7 @@
 #include "lf/film/develop/frame_file.h"
 #include "lf/render/collect/collect.h"
 #include "lf/render/collect/frame_lens.h"
+#include "lf/selection/image_order.h"
 #include "lf/storage/load/open_store.h"
 
 namespace lf {
@@ -33,6 +34,17 @@ std::vector<SelectedImage> SampleOf(const FrameNeeds& needs, const LfImageStore&
     if (sample.size() == kSampleImages) break;
   }
   return sample;
+}
+
+// Returns the needs with their LF images in an order of groups.
+FrameNeeds InGroups(const LightField& light_field, FrameNeeds needs) {
+  const ImageRanks ranks = RanksOf(ImageOrder::kGroups, light_field, 0);
+  const auto rank_of = [&](const FrameNeeds::Image& image) {
+    return ranks.of_images[image.id.value];
+  };
+  std::sort(needs.images.begin(), needs.images.end(),
+            [&](const auto& a, const auto& b) { return rank_of(a) < rank_of(b); });
+  return needs;
 }
 
 }  // namespace
@@ -78,15 +90,20 @@ Result<RenderRate> MeasureRate(const ImageIndex& index, const RenderCamera& fram
   rate.load_s = statistics.times.load_cpu_s / static_cast<double>(loaded);
   if (reference_bytes > 0 && !kept.in_groups) {
     // The LF images of the sample are far apart, so that each has been decoded with all of its
-    // reference images. In the render, as large a part of these is in memory as is kept.
+    // reference images. In the render, as large a part of these is in memory as is kept. If it is
+    // all, each LF image is decoded about once, as those of a group are one after another.
+    const std::vector<SelectedImage> group = SampleOf(InGroups(light_field, needs), store);
+    opened->LimitReferences(0);
+    opened->LimitReferences(kept.bytes);
     SensorPlate again(plate.width(), plate.height(), plate.kind());
     collected.plate = &again;
-    LF_ASSIGN_OR_RETURN(const CollectStatistics kept_all,
-                        Collect(light_field, store, {collected}, sample, options, pool, nullptr));
-    const double kept_s = kept_all.times.load_cpu_s / static_cast<double>(loaded);
+    LF_ASSIGN_OR_RETURN(const CollectStatistics once,
+                        Collect(light_field, store, {collected}, group, options, pool, nullptr));
+    const double once_s = once.times.load_cpu_s / static_cast<double>(std::max<size_t>(
+                                                      1, group.size() - once.skipped.size()));
     const double kept_share =
         std::min(1.0, static_cast<double>(kept.bytes) / static_cast<double>(reference_bytes));
-    rate.load_s = kept_s + (1 - kept_share) * std::max(0.0, rate.load_s - kept_s);
+    rate.load_s = once_s + (1 - kept_share) * std::max(0.0, rate.load_s - once_s);
   }
   rate.collect_s = statistics.times.collect_cpu_s /
                    static_cast<double>(std::max<uint64_t>(1, statistics.frames[0].tested_count));
