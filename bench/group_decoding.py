@@ -9,8 +9,8 @@ BUILD_DIR is a build with LF_BENCH=ON, for lf_predicted_group. Each capture of l
 8-bit RGB. lf_predicted_group encodes it relative to each other, by contexts as `--profile group` does and packed, and tells the CPU
 time of decoding. The peer is HEVC:
 libx265 in ffmpeg, preset medium, 16 pictures of which the first is a key picture, in rows from left to right and from
-right to left in turn, with whole colours (yuv444p), and with halved ones (yuv420p) where these reach the PSNR. Its QP is
-the largest with which the PSNR of the RGB pictures is at least that of the group. ffmpeg decodes the file with one
+right to left in turn, with whole colours (yuv444p), and with halved ones (yuv420p) where these reach the PSNR. Its QP
+is the largest with which the PSNR of the RGB pictures is at least that of the group. ffmpeg decodes the file with one
 thread, 20 times in a row; the time of the first, with the start of the program, is left out. It is FFmpeg's decoder, in
 assembly for this machine, and does not convert to RGB. Figures are medians of --runs, which alternate.
 """
@@ -104,7 +104,8 @@ class Video:
             found = re.search(r"bench: utime=([\d.]+)s stime=([\d.]+)s", done.stderr)
             frames = re.findall(r"frame= *(\d+)", done.stderr)
             if not found or int(frames[-1]) != COUNT * (loops + 1):
-                raise SystemExit(f"ffmpeg decoded {frames[-1:]} pictures, expected {COUNT * (loops + 1)}:\n{done.stderr}")
+                raise SystemExit(f"ffmpeg decoded {frames[-1:]} pictures, expected {COUNT * (loops + 1)}:\n"
+                                 f"{done.stderr}")
             return float(found[1]) + float(found[2])
         return (spent(REPEATS) - spent(0)) / REPEATS
 

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Compares films from a packed store of predicted LF images with films from one of LF images that are encoded each by
-itself: bytes where frames are equally good, and CPU time and memory of films.
+"""Compares films from a packed store of predicted LF images with films from stores of LF images that are encoded each
+by itself, packed or by contexts: bytes where frames are equally good, and CPU time and memory of films.
 
 usage: group_films.py BIN SHARED [--only CAPTURE,...] [--views 16] [--size 480x320] [--frames 1-50x12] [--group PROFILE]
                       [--write doc/codec.md]
@@ -9,16 +9,18 @@ usage: group_films.py BIN SHARED [--only CAPTURE,...] [--views 16] [--size 480x3
 
 BIN      folder of lfcompressor, lfrenderer, lfimport, lfexample and lfsynth
 SHARED   folder with data/blender-shop
---group  the profile of the second store, and with -lossless its lossless one (group)
+--group  the profile of the store of predicted LF images, and with -lossless its lossless one (group)
 
-`still-life` has --views x --views LF images of lfsynth (8 bits); `noisy` the same with noise, whose frames are
-compared with those of the scene without; `mosaics` are RGGB mosaics of it; `shop` are the JPEG files in the middle of
-blender-shop. Each is encoded by the profile default and by the group's at several thresholds, and lossless. Frames of a
-focus pull are rendered by the defaults from each store. Their PSNR is that of all frames together, as sRGB pictures of
-16 bits, against frames of the original light field. Bytes at a PSNR are interpolated between thresholds.
+`still-life` has --views x --views LF images of lfsynth (8 bits); `noisy` the same with noise, whose frames are compared
+with those of the scene without; `mosaics` are RGGB mosaics of it; `shop` are the JPEG files in the middle of
+blender-shop. Each is encoded by the profile default, without and with --entropy contexts, and by the group's, at
+several thresholds, and lossless. Frames of a focus pull are rendered by the defaults from each store. Their PSNR is
+that of all frames together, as sRGB pictures of 16 bits, against frames of the original light field. Bytes at a PSNR
+are interpolated between thresholds.
 
-Films are rendered once more from the stores of threshold 3: in the order spread with enough memory and with the least
-that lfrenderer accepts, and in the order groups with as little. Their frames must have the same bits.
+The first of these frames is rendered once more from the stores of threshold 3: in the order spread with enough memory
+and with the least that lfrenderer accepts, and in the order groups with as little. It must have the same bits. (A film
+of several frames would read its LF images once for each, because the least memory has room for one plate.)
 """
 import argparse
 import json
@@ -36,8 +38,9 @@ import numpy as np
 from equal_quality import bytes_at
 from quality import results
 
-THRESHOLDS = (1.5, 3, 5, 8)
+THRESHOLDS = (3, 5, 8, 12, 16)
 COMPARED = 3  # threshold of the stores whose films are measured
+WAYS = ("single", "contexts", "group")
 TARGETS_DB = {"still-life": 52, "shop": 54}  # other captures: what the profile default reaches at COMPARED
 COLLECT = "--mode collect --estimator bilinear --filter auto --lens-weights auto".split()
 NOISE = 2.5  # standard deviation, in grey steps
@@ -86,11 +89,11 @@ class Bench:
                                                          arguments.group)
         self.folder = folder
 
-    def profiles(self, is_lossless=False):
-        """Returns the profiles that are compared, ours last."""
-        if not is_lossless:
-            return "default", self.group
-        return "lossless", f"{self.group}-lossless" if self.group == "group" else "lossless"
+    def ways(self, is_lossless=False):
+        """Returns words of lfcompressor by the ways that are compared."""
+        single = ["--profile", "lossless" if is_lossless else "default"]
+        group = f"{self.group}-lossless" if is_lossless else self.group
+        return {"single": single, "contexts": [*single, "--entropy", "contexts"], "group": ["--profile", group]}
 
 
 class Capture:
@@ -107,37 +110,39 @@ class Capture:
         results.call([bench.programs / "lfexample", clean, "-o", self.path, "--move", "focus-pull", "-q"])
         self.truth = self.frames(clean)
 
-    def words(self, light_field, *options):
+    def words(self, light_field, *options, frames=None):
         """Returns a call of lfrenderer, and the folder of its frames."""
         out = self.folder / "frames"
         shutil.rmtree(out, ignore_errors=True)
-        return [self.bench.programs / "lfrenderer", light_field, self.path, "-o", out, "--frames", self.bench.range,
-                "--format", "png16", "--no-contact-sheet", "-q", *COLLECT, *options], out
+        return [self.bench.programs / "lfrenderer", light_field, self.path, "-o", out, "--frames",
+                frames or self.bench.range, "--format", "png16", "--no-contact-sheet", "-q", *COLLECT, *options], out
 
     def frames(self, light_field, *options):
         words, out = self.words(light_field, *options)
         results.call(words)
         return pictures_of(out)
 
-    def store(self, profile, threshold):
+    def store(self, way, words, threshold):
         """Encodes the light field. Returns the store and the report of lfcompressor."""
-        store = self.folder / f"{profile}-{threshold}.lfs"
-        words = ["--profile", profile, *(() if threshold is None else ("--threshold", threshold))]
+        store = self.folder / f"{way}-{threshold}.lfs"
+        words = [*words, *(() if threshold is None else ("--threshold", threshold))]
         report = json.loads(results.call([self.bench.programs / "lfcompressor", self.field, "-o", store, "--reencode",
                                           "--overwrite", "--json", "--progress", "none", *words]))
         return store, report
 
     def film(self, store, order, memory):
-        """Renders a film. Returns its use of resources, and its frames."""
-        words, out = self.words(store, "--order", order, "--memory", memory)
+        """Renders the first frame. Returns its use of resources, and the frame."""
+        words, out = self.words(store, "--order", order, "--memory", memory, "--json", frames=1)
         used = results.timed(words)
-        return {"cpu_s": used["cpu_s"], "peak_mib": used["peak_bytes"] / 2 ** 20}, pictures_of(out)
+        load_s = re.search(r'"load_cpu_s": ([\d.e-]+)', used["stdout"])
+        return {"cpu_s": used["cpu_s"], "load_cpu_s": float(load_s[1]),
+                "peak_mib": used["peak_bytes"] / 2 ** 20}, pictures_of(out)
 
     def least_memory(self, store):
-        """Returns the least --memory, in MiB, that lfrenderer accepts for the film."""
+        """Returns the least --memory, in MiB, that lfrenderer accepts for a frame."""
         mib = 1
         for _ in range(4):
-            words, _ = self.words(store, "--memory", f"{mib}M")
+            words, _ = self.words(store, "--memory", f"{mib}M", frames=1)
             done = subprocess.run([str(word) for word in words], capture_output=True, text=True)
             if done.returncode == 0:
                 return mib
@@ -165,10 +170,10 @@ def store_rows(capture, stores):
     rows = []
     for is_lossless in (False, True):
         for threshold in (None,) if is_lossless else THRESHOLDS:
-            for way, profile in zip(("single", "group"), capture.bench.profiles(is_lossless)):
-                store, report = capture.store(profile, threshold)
-                rows.append({"capture": capture.name, "way": way, "profile": profile, "threshold": threshold,
-                             "lf_images": report["lf_images"] if "lf_images" in report else None,
+            for way, words in capture.bench.ways(is_lossless).items():
+                store, report = capture.store(way, words, threshold)
+                rows.append({"capture": capture.name, "way": way, "threshold": threshold,
+                             "lf_images": report["lf_images"],
                              "bytes": report["code_bytes"], "encode_cpu_s": report["encode_cpu_s"],
                              "frame_db": decibels(capture.truth, capture.frames(store))})
                 print(rows[-1], file=sys.stderr, flush=True)
@@ -192,7 +197,8 @@ def film_rows(capture, stores):
             used, frames = capture.film(store, order, memory)
             bits.setdefault(way, frames)
             if not all(map(np.array_equal, bits[way], frames)):
-                raise SystemExit(f"{capture.name}, {way}: frames have other bits with --order {order} --memory {memory}")
+                raise SystemExit(f"{capture.name}, {way}: frames have other bits with --order {order} --memory "
+                                 f"{memory}")
             rows.append({"capture": capture.name, "way": way, "order": order, "memory": memory} | used)
             print(rows[-1], file=sys.stderr, flush=True)
     return rows
@@ -225,17 +231,22 @@ def change(now, before):
     return "-" if now is None or before is None else f"{100 * (now / before - 1):+.1f} %".replace("-", "−")
 
 
+def changes(sizes):
+    *others, group = sizes
+    return ", ".join(change(group, other) for other in others)
+
+
 def bytes_table(record):
-    lines = ["| capture | frames, dB | single, MB | group, MB | change | encoding, CPU s: single, group | lossless: single, "
-             "group, MB | change |", "|" + " --- |" * 8]
+    lines = ["| capture | frames, dB | MB: single, contexts, group | group / single, contexts | encoding, CPU s | "
+             "lossless, MB | group / single, contexts |", "|" + " --- |" * 7]
     for name in record["captures"]:
-        single, group = (of(record["rows"], name, way) for way in ("single", "group"))
-        target = TARGETS_DB.get(name, at(single, COMPARED)["frame_db"])
-        sizes = [bytes_at([(row["frame_db"], row["bytes"]) for row in rows], target) for rows in (single, group)]
-        cpu = ", ".join(f"{at(rows, COMPARED)['encode_cpu_s']:.1f}" for rows in (single, group))
-        exact = [of(record["rows"], name, way, True)[0]["bytes"] for way in ("single", "group")]
-        lines.append(f"| {name} | {target:.1f} | {mb(sizes[0])} | {mb(sizes[1])} | {change(sizes[1], sizes[0])} | {cpu} | "
-                     f"{mb(exact[0])}, {mb(exact[1])} | {change(exact[1], exact[0])} |")
+        of_ways = [of(record["rows"], name, way) for way in WAYS]
+        target = TARGETS_DB.get(name, at(of_ways[0], COMPARED)["frame_db"])
+        sizes = [bytes_at([(row["frame_db"], row["bytes"]) for row in rows], target) for rows in of_ways]
+        cpu = ", ".join(f"{at(rows, COMPARED)['encode_cpu_s']:.1f}" for rows in of_ways)
+        exact = [of(record["rows"], name, way, True)[0]["bytes"] for way in WAYS]
+        lines.append(f"| {name} | {target:.1f} | {', '.join(map(mb, sizes))} | {changes(sizes)} | {cpu} | "
+                     f"{', '.join(map(mb, exact))} | {changes(exact)} |")
     return lines
 
 
@@ -243,7 +254,7 @@ def thresholds_table(record):
     lines = ["| capture | store | " + " | ".join(f"threshold {t:g}" for t in THRESHOLDS) + " |",
              "|" + " --- |" * (2 + len(THRESHOLDS))]
     for name in record["captures"]:
-        for way in ("single", "group"):
+        for way in WAYS:
             rows = of(record["rows"], name, way)
             cells = [f"{at(rows, t)['frame_db']:.1f} dB, {mb(at(rows, t)['bytes'])} MB" for t in THRESHOLDS]
             lines.append(f"| {name} | {way} | " + " | ".join(cells) + " |")
@@ -251,10 +262,11 @@ def thresholds_table(record):
 
 
 def films_table(record):
-    lines = ["| capture | store | order | `--memory` | CPU s | peak MiB |", "|" + " --- |" * 6]
+    lines = ["| capture | store | order | `--memory` | CPU s | of it loading LF images | "
+             "peak MiB |", "|" + " --- |" * 7]
     for row in record["films"]:
         lines.append(f"| {row['capture']} | {row['way']} | `{row['order']}` | {row['memory']} | {row['cpu_s']:.2f} | "
-                     f"{row['peak_mib']:.0f} |")
+                     f"{row['load_cpu_s']:.2f} | {row['peak_mib']:.0f} |")
     return lines
 
 
@@ -278,9 +290,10 @@ def main():
         record = results.context() | {"captures": names, "group": arguments.group}
         with tempfile.TemporaryDirectory() as temporary:
             record["rows"], record["films"] = measure(Bench(arguments, pathlib.Path(temporary)), names)
-    text = "\n".join([results.sentence(record), f"Profile of the groups: `{record['group']}`. Films are of the stores of "
-                      f"threshold {COMPARED}; the frames of a store have the same bits in all of them.", ""]
-                     + bytes_table(record) + [""] + thresholds_table(record) + [""] + films_table(record)) + "\n"
+    words = (f"Profile of the groups: `{record['group']}`. The frame of the third table is of the stores of threshold "
+             f"{COMPARED}; each store gives it the same bits in all of its rows.")
+    tables = [*bytes_table(record), "", *thresholds_table(record), "", *films_table(record)]
+    text = "\n".join([results.sentence(record), words, "", *tables]) + "\n"
     results.publish(arguments, "quality/group_films.py", record, text)
 
 

@@ -83,7 +83,8 @@ def main():
                                         pathlib.Path(temporary))
             record["rows"] = measure(bench, arguments.only.split(","), arguments.seeds)
     text = "\n".join([results.sentence(record), "PSNR, dB, of frames of the first *n* LF images against frames of all; "
-                      f"means of {record['seeds']} seeds each. Frames are rendered by `{' '.join(DEFAULT)}`.", ""] + table(record)) + "\n"
+                      f"means of {record['seeds']} seeds each. Frames are rendered by `{' '.join(DEFAULT)}`.", ""]
+                     + table(record)) + "\n"
     results.publish(arguments, "quality/group_order.py", record, text)
 
 

@@ -27,7 +27,8 @@ PAGELESS = False
 # line follow from it. "hybrid" has plates, which record rays, and rebinned rays.
 FILMS = {
     "collect": {"filter": "bicubic", "lf_pixels": "points", "lens_weights": "hat", "fill": 7, "max_images": 9,
-                "max_angle_deg": 60, "order": "round-robin", "seed": 5, "stop_when": "noise<=0.25", "back_end": "reference"},
+                "max_angle_deg": 60, "order": "round-robin", "seed": 5, "stop_when": "noise<=0.25",
+                "back_end": "reference"},
     "counted": {"estimator": "nearest", "smooth_below": 3},
     "hybrid": {"mode": "hybrid", "kept": "edges", "max_rays": 5000, "average_others": False, "preview": "on",
                "alpha": 3.5, "beta": 0.01, "xi": 0.5, "edge_sigma": 1.5, "probability_sigma": 0.5, "colour_sigma": 0.25,
