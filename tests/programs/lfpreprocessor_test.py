@@ -96,7 +96,7 @@ class PackagesTest(ProgramTestCase):
         field, path = self.film()
         whole = self.folder / "whole"
         self.succeeds(RENDERER, field, path, "-o", whole, "-q")
-        for order in ("round-robin", "area"):
+        for order in ("round-robin", "area", "groups"):
             _, files = self.packages(field, path, "--order", order, "--packages", "2", name=order)
             self.succeeds(RENDERER, *files, "-o", self.folder / f"out-{order}", "-q")
             self.assertEqual(self.digests(self.folder / f"out-{order}"), self.digests(whole))

@@ -175,7 +175,7 @@ class OrderTest(ProgramTestCase):
         path = self.folder / "path.yaml"
         path.write_text(PATH_YAML.format(frames=6, end=0.2, middle=0.1, narrow=0.002))
         digests = {}
-        for order in ("shuffle", "round-robin", "area"):
+        for order in ("shuffle", "round-robin", "area", "groups"):
             packages = self.folder / order
             limit = ["--max-images", "3"]
             self.succeeds(PREPROCESSOR, field, path, "-o", packages, "--packages", "2", "--order",
@@ -189,7 +189,9 @@ class OrderTest(ProgramTestCase):
                 # Lens weights reach beyond small lenses. LF images that have only such a weight are also counted.
                 for report in out.glob("report*.json"):
                     for frame in json.loads(report.read_text())["frames"]:
-                        self.assertGreaterEqual(frame["lf_images"], 3, (order, name))
+                        # In the order groups, one of the three is beside the last lens and sends it no ray.
+                        least = 2 if order == "groups" else 3
+                        self.assertGreaterEqual(frame["lf_images"], least, (order, name))
             self.assertEqual(digests[order, "whole"], digests[order, "packed"])
         self.assertNotEqual(digests["shuffle", "whole"], digests["area", "whole"])
         packages = sorted((self.folder / "area").glob("*.lfp"))

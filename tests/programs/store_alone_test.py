@@ -23,7 +23,8 @@ CUTS = {"default": [], "nearest": ["--estimator", "nearest"], "area": ["--lens-w
         "hat": ["--lens-weights", "hat"], "none": ["--lens-weights", "none"],
         "hybrid": ["--mode", "hybrid"], "rebin": ["--mode", "rebin"]}
 RULES = {"most": ["--max-images", 5], "noise": ["--stop-when", "noise<=0.05"], "samples": ["--stop-when", "samples>=3"],
-         "seed": ["--seed", 7, "--max-images", 5], "area order": ["--order", "area", "--max-images", 5]}
+         "seed": ["--seed", 7, "--max-images", 5], "area order": ["--order", "area", "--max-images", 5],
+         "groups": ["--order", "groups", "--max-images", 5]}
 
 
 def smooth(index):
