@@ -6,8 +6,8 @@ usage: bench/group_decoding.py BUILD_DIR [--only "CAPTURE;..."] [--size 960x640]
        bench/group_decoding.py --again JSON [--write doc/codec.md]
 
 BUILD_DIR is a build with LF_BENCH=ON, for lf_predicted_group. Each capture of lfsynth is a group of 4 x 4 LF images in
-8-bit RGB. lf_predicted_group encodes it relative to each other, by contexts as `--profile group` does and packed, and tells the CPU
-time of decoding. The peer is HEVC:
+8-bit RGB. lf_predicted_group encodes it relative to each other, by contexts as `--profile group` does and packed, and
+tells the CPU time of decoding. The peer is HEVC:
 libx265 in ffmpeg, preset medium, 16 pictures of which the first is a key picture, in rows from left to right and from
 right to left in turn, with whole colours (yuv444p), and with halved ones (yuv420p) where these reach the PSNR. Its QP
 is the largest with which the PSNR of the RGB pictures is at least that of the group. ffmpeg decodes the file with one
@@ -169,7 +169,8 @@ def measure(build, names, size, runs, folder):
 def table(record):
     lines = ["| capture | threshold | way | dB | bytes | decoding, ns of CPU per pixel | / group |",
              "|" + " --- |" * 7]
-    names = {"group": "group", "packed": "group, packed", "alone": "each alone, packed", "yuv444p": "HEVC, yuv444p", "yuv420p": "HEVC, yuv420p"}
+    names = {"group": "group", "packed": "group, packed", "alone": "each alone, packed",
+             "yuv444p": "HEVC, yuv444p", "yuv420p": "HEVC, yuv420p"}
     order = list(names)
     rows = sorted(record["rows"], key=lambda row: (list(CAPTURES).index(row["capture"]), row["threshold"],
                                                    order.index(row["way"])))
