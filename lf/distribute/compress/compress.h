@@ -27,8 +27,8 @@ namespace lf {
 enum class Prediction : uint8_t {
   kNone,    // every LF image is encoded by itself
   kGroups,  // LF images are predicted where that saves a tenth of the bytes
-  // What takes the fewest bytes for a sample of the LF images: kGroups; kNone, where files that are
-  // smaller are kept; or KeepFiles::kAll.
+  // Whichever takes the fewest bytes for a sample of the LF images: kGroups; kNone, and files that
+  // are smaller are kept; or KeepFiles::kAll.
   kChosen,
 };
 
