@@ -23,7 +23,7 @@
 
 namespace lf {
 
-// Whether LF images are predicted from others of their group (selection/reference_groups.h).
+// The prediction of LF images from others of their group (selection/reference_groups.h).
 enum class Prediction : uint8_t {
   kNone,    // every LF image is encoded by itself
   kGroups,  // LF images are predicted where that saves a tenth of the bytes
