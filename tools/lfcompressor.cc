@@ -125,7 +125,7 @@ void AddQuality(CLI::App& app, Arguments& a) {
   quality.AddChoice(
       "--profile", a.codec.profile,
       {"default", "thesis", "lossless", "recorded", "group", "group-lossless", "auto"},
-      "How LF images are encoded\n"
+      "How to encode\n"
       "default: lossy, wavelets with a dead-zone quantiser for each subband\n"
       "thesis: lossy, Haar wavelets with one threshold and one range of values for all subbands\n"
       "lossless: the decoded pixels equal those of the image files bit by bit\n"

@@ -318,6 +318,7 @@ class SchemasTest(ProgramTestCase):
         self.prints("compress_report", *compress, "--verify")
         self.prints("compress_report", *compress, "--resume")
         self.prints("compress_report", *compress, "--overwrite", "--profile", "lossless")
+        self.prints("compress_report", *compress, "--overwrite", "--profile", "auto")
         self.prints("compress_report", "lfcompressor", self.broken_field(), "-o", self.folder / "b.lfs", code=6)
         self.store_of_packages()
         self.prints("compress_report", "lfcompressor", *(self.folder / "few").glob("*.lfp"), "--quality-by-use", "-o",
