@@ -36,7 +36,6 @@ UNTRIED = {
     "warn_of_other_film: this film with --lens-weights none": "names a cause, not a remedy",
     "find_threshold: --target-psnr cannot be used with --profile lossless": BEFORE,
     "read_stanford: the grid (--grid) has": BEFORE,
-    "compress: has LF images that are predicted from others": CAPTURE + "a store of predicted LF images",
     "check_film_settings: exposures of the same poses (lf_clipped)": CAPTURE + "brackets that were filmed",
     "check_film_settings: state its key time, or open one time": BEFORE,
     "store_cache: make the store by resolution": "needs a server with a large store; remote_store_test.py has one",

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tests packed stores of groups from a user's view: sizes, films, kills, faults, copies, and the choice of a profile.
 
-usage: group_stores_test.py LFCOMPRESSOR LFRENDERER LFPREPROCESSOR LFIMPORT LFSYNTH
+usage: group_stores_test.py LFCOMPRESSOR LFRENDERER LFPREPROCESSOR LFIMPORT LFSYNTH LFDENSIFY
 """
 import hashlib
 import json
@@ -14,9 +14,12 @@ import sys
 import time
 import unittest
 
-from program_test_case import ProgramTestCase
+import numpy as np
+from PIL import Image
 
-COMPRESSOR = RENDERER = PREPROCESSOR = IMPORT = SYNTH = None
+from program_test_case import ProgramTestCase, wait_until
+
+COMPRESSOR = RENDERER = PREPROCESSOR = IMPORT = SYNTH = DENSIFY = None
 
 COUNT = 81
 PATH = """format: lfpath 1
@@ -43,10 +46,10 @@ class GroupStoresTest(ProgramTestCase):
         self.path = self.folder / "path.yaml"
         self.path.write_text(PATH)
 
-    def capture(self, *options):
-        """Photographs the still life with 81 LF cameras."""
+    def capture(self, *options, count=COUNT):
+        """Photographs the still life, usually with 81 LF cameras."""
         field = self.folder / "field"
-        self.succeeds(SYNTH, "still-life", "-o", field, "--count", COUNT, "--size", "120x80", "--format", "png",
+        self.succeeds(SYNTH, "still-life", "-o", field, "--count", count, "--size", "120x80", "--format", "png",
                       *options)
         return field
 
@@ -139,6 +142,57 @@ class GroupStoresTest(ProgramTestCase):
         self.assertGreater(len(skipped), 1)
         self.assertLess(len(skipped), COUNT // 2)
 
+    def test_an_lf_image_that_is_mended_stands_beside_one_that_is_not_predicted(self):
+        field = self.capture(count=16)  # one group
+        images = sorted((field / "images").iterdir())
+        broken = images[2].read_bytes()
+        words = [field, "-o", self.store, "--profile", "group"]
+        for noisy in images[10:13]:
+            with self.subTest(noisy=noisy.name):
+                kept = noisy.read_bytes()
+                noise = np.random.default_rng(1).integers(0, 256, (80, 120, 3), np.uint8)
+                Image.fromarray(noise).save(noisy)
+                images[2].write_bytes(broken[:60])
+                self.fails(3, [images[2].name], COMPRESSOR, *words, "--strict", "--overwrite")
+                images[2].write_bytes(broken)
+                report = self.compress(*words, "--resume", "--verify")
+                self.assertEqual((report["resumed"], report["verified"]), (15, 16))
+                noisy.write_bytes(kept)
+
+    def test_a_store_is_densified_and_its_recorded_images_stay_predicted(self):
+        field = self.capture("--overwrite", "--spacing", 0.02, count=16)
+        self.compress(field, "-o", self.store, "--profile", "group")
+        codes, predicted = self.codes()
+        self.assertGreater(len(predicted), 8)
+        words = [DENSIFY, self.store, "--most", 60, "--cache", "none", "--threads", 1]
+        dense, again = self.folder / "dense.lfs", self.folder / "again.lfs"
+        self.succeeds(*words, "-o", dense)
+        self.assertEqual(self.codes(dense)[1], predicted)
+        self.assertEqual(self.codes(dense)[0][:16], codes)
+        self.assertGreater(len(self.codes(dense)[0]), 30)
+        # Killed at several moments and resumed, it has the same bits.
+        unfinished = again.with_name("again.lfs.unfinished")
+        ends = []
+        for stop in signal.SIGKILL, signal.SIGINT, signal.SIGKILL:
+            process = subprocess.Popen([*map(str, words), "-o", str(again), "--resume"], stderr=subprocess.DEVNULL,
+                                       stdout=subprocess.DEVNULL)
+            size = unfinished.stat().st_size if unfinished.exists() else 0
+            wait_until(lambda size=size: unfinished.exists() and unfinished.stat().st_size > size + 20000, process)
+            process.send_signal(stop)
+            ends.append(process.wait(timeout=240))
+            self.assertIn(ends[-1], (5, -stop, 0))
+        self.assertNotEqual(ends[0], 0)
+        if not again.exists():
+            self.succeeds(*words, "-o", again, "--resume")
+        self.assertEqual(self.codes(again), self.codes(dense))
+        # A film from a store without loss has the bits of one that is densified from the files.
+        exact, of_files = self.folder / "exact.lfs", self.folder / "of_files.lfs"
+        self.compress(field, "-o", exact, "--profile", "group-lossless")
+        self.succeeds(DENSIFY, exact, "-o", dense, "--most", 60, "--cache", "none", "--overwrite")
+        self.succeeds(DENSIFY, field, "-o", of_files, "--most", 60, "--cache", "none")
+        self.assertGreater(len(self.codes(dense)[1]), 8)
+        self.assertEqual(self.frames("dense film", dense, self.path), self.frames("film", of_files, self.path))
+
     def test_packages_and_copies(self):
         field = self.capture()
         self.compress(field, "-o", self.store, "--profile", "group-lossless")
@@ -177,5 +231,5 @@ class GroupStoresTest(ProgramTestCase):
 
 
 if __name__ == "__main__":
-    COMPRESSOR, RENDERER, PREPROCESSOR, IMPORT, SYNTH = sys.argv[1:6]
-    unittest.main(argv=sys.argv[:1])
+    COMPRESSOR, RENDERER, PREPROCESSOR, IMPORT, SYNTH, DENSIFY = sys.argv[1:7]
+    unittest.main(argv=sys.argv[:1] + sys.argv[7:])

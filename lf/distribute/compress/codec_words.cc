@@ -52,8 +52,11 @@ Result<void> SetCodec(const CodecWords& words, CompressOptions* options) {
   if (words.profile == "auto" && words.reencode)
     return UsageError(
         "{reencode} cannot be used with {profile auto}, which chooses whether image files are "
-        "kept: "
-        "leave one of them out");
+        "kept: leave one of them out");
+  if (words.quality_by_use && words.profile == "auto")
+    return UsageError(
+        "{quality_by_use} cannot be used with {profile auto}, which may keep image files as they "
+        "are: leave it out, or give {profile default} or {profile group}");
   if (words.quality_by_use && words.profile != "default" && words.profile != "group")
     return UsageError(fmt::format(
         "{{quality_by_use}} cannot be used with {{profile {}}}, which has no threshold for each LF "

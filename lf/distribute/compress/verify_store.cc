@@ -78,7 +78,8 @@ class Verifier {
   // Checks a group of LF images, of which some may be predicted. Returns what is wrong with each.
   // kInterrupted.
   Result<std::vector<Result<void>>> CheckGroup(std::span<const GroupMember> group) {
-    uint32_t missing = 0, late = 0;  // bits of ranks
+    // Bits of ranks. An LF image is late if it may have been added after its group.
+    uint32_t missing = 0, late = 0;
     for (size_t rank = 0; rank < group.size(); ++rank) {
       const LfImageId id = group[rank].id;
       if (!IsStored(id))
@@ -89,9 +90,17 @@ class Verifier {
     LF_ASSIGN_OR_RETURN(std::vector<Result<void>> results, CheckGroup(group, missing, missing));
     const bool all_right = std::all_of(results.begin(), results.end(),
                                        [](const Result<void>& result) { return bool(result); });
-    if (all_right || late == 0) return results;
+    if (all_right) return results;
     // LF images that could not be read when the group was encoded, but when the unfinished store
-    // was resumed, are encoded by themselves.
+    // was resumed, are encoded by themselves. Others that are not predicted may have another
+    // threshold (GroupSteps).
+    for (size_t rank = 0; rank < group.size(); ++rank) {
+      if (!(late >> rank & 1)) continue;
+      const Result<void> by_itself = Check(group[rank].id);
+      if (!by_itself && by_itself.error().kind == ErrorKind::kInterrupted) return by_itself.error();
+      if (!by_itself) late &= ~(1U << rank);
+    }
+    if (late == 0) return results;
     LF_ASSIGN_OR_RETURN(std::vector<Result<void>> others,
                         CheckGroup(group, missing | late, missing | late));
     const auto faults = [](const std::vector<Result<void>>& all) {
