@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "lf/core/geometry.h"
+#include "lf/light_field/model/brackets.h"
 #include "lf/selection/capture_surface.h"
 #include "lf/selection/reference_groups.h"
 #include "lf/selection/spread_order.h"
@@ -14,29 +15,36 @@ namespace lf {
 namespace {
 
 // The LF images of a group are of one kind, and all recorded or all virtual.
-using Kind = std::tuple<int, int, double>;  // width, height, recording time
+using Kind = std::tuple<int, int, double, uint32_t>;  // width, height, recording time, exposure
 
-Kind KindOf(const LightField& light_field, uint32_t id) {
+Kind KindOf(const LightField& light_field, uint32_t id, uint32_t exposure_number) {
   const Intrinsics& k =
       (light_field.reduction ? light_field.reduction->recorded_intrinsics
                              : light_field.intrinsics)[light_field.cameras[id].intrinsics_index];
-  return {k.width_px, k.height_px, light_field.times.empty() ? 0 : light_field.times[id]};
+  return {k.width_px, k.height_px, light_field.times.empty() ? 0 : light_field.times[id],
+          exposure_number};
 }
 
 // Returns the LF images `ids` group after group, groups in a spread order.
 //   sizes  receives the numbers of LF images of the groups
 std::vector<uint32_t> GroupsInOrder(const LightField& light_field, const std::vector<uint32_t>& ids,
                                     uint64_t seed, uint64_t stream, std::vector<size_t>* sizes) {
-  std::vector<Kind> kinds;
-  for (const uint32_t id : ids) kinds.push_back(KindOf(light_field, id));
+  std::vector<double> exposures;
+  exposures.reserve(ids.size());
+  for (const uint32_t id : ids) exposures.push_back(ExposureOf(light_field.cameras[id]));
+  const std::vector<uint32_t> numbers = ExposureNumbers(exposures);
+  std::vector<Kind> kind_of;  // of each of `ids`
+  kind_of.reserve(ids.size());
+  for (size_t i = 0; i < ids.size(); ++i)
+    kind_of.push_back(KindOf(light_field, ids[i], numbers[i]));
+  std::vector<Kind> kinds = kind_of;
   std::sort(kinds.begin(), kinds.end());
   kinds.erase(std::unique(kinds.begin(), kinds.end()), kinds.end());
   std::vector<CameraToGroup> cameras;
   cameras.reserve(ids.size());
-  for (const uint32_t id : ids) {
-    const RigidTransform& pose = light_field.cameras[id].cam_from_world;
-    const auto kind =
-        std::lower_bound(kinds.begin(), kinds.end(), KindOf(light_field, id)) - kinds.begin();
+  for (size_t i = 0; i < ids.size(); ++i) {
+    const RigidTransform& pose = light_field.cameras[ids[i]].cam_from_world;
+    const auto kind = std::lower_bound(kinds.begin(), kinds.end(), kind_of[i]) - kinds.begin();
     cameras.push_back({pose.Inverse().translation, pose.rotation.row(2).transpose(),
                        static_cast<uint32_t>(kind)});
   }

@@ -121,8 +121,8 @@ TEST(GroupOrder, VirtualImagesDoNotChangeTheOrderOfRecordedOnes) {
 }
 
 // The groups of a light field video hold LF images of one time, and those of a rig with two kinds
-// of cameras LF images of one size.
-TEST(GroupOrder, GroupsHaveOneTimeAndOneSize) {
+// of cameras LF images of one size; those of brackets one exposure.
+TEST(GroupOrder, GroupsHaveOneTimeOneSizeAndOneExposure) {
   LightField video = GridOfImages(8, 4);
   const LightField once = video;
   video.cameras.insert(video.cameras.end(), once.cameras.begin(), once.cameras.end());
@@ -132,7 +132,10 @@ TEST(GroupOrder, GroupsHaveOneTimeAndOneSize) {
   sizes.times.clear();
   sizes.intrinsics.push_back({100, 100, 50, 40, 0, 100, 80});
   for (uint32_t id = 32; id < 64; ++id) sizes.cameras[id].intrinsics_index = 1;
-  for (const LightField& field : {video, sizes}) {
+  LightField brackets = video;
+  brackets.times.clear();
+  for (uint32_t id = 32; id < 64; ++id) brackets.cameras[id].gain = 4;
+  for (const LightField& field : {video, sizes, brackets}) {
     const std::vector<uint32_t> order = OrderByGroups(field, 1);
     size_t changes = 0;
     for (size_t i = 1; i < order.size(); ++i) changes += order[i] / 32 != order[i - 1] / 32;

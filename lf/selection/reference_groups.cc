@@ -320,6 +320,21 @@ std::vector<Item> ItemsOf(std::span<const CameraToGroup> cameras, std::span<cons
 
 }  // namespace
 
+std::vector<uint32_t> ExposureNumbers(std::span<const double> exposures) {
+  constexpr double kHalfStop = 1.4142135623730951;
+  std::vector<size_t> ascending(exposures.size());
+  std::iota(ascending.begin(), ascending.end(), size_t{0});
+  std::sort(ascending.begin(), ascending.end(),
+            [&](size_t a, size_t b) { return exposures[a] < exposures[b]; });
+  std::vector<uint32_t> numbers(exposures.size());
+  for (size_t i = 1; i < ascending.size(); ++i) {
+    const size_t before = ascending[i - 1], here = ascending[i];
+    const bool is_apart = exposures[here] > kHalfStop * exposures[before];
+    numbers[here] = numbers[before] + (is_apart ? 1 : 0);
+  }
+  return numbers;
+}
+
 ReferenceGroups GroupCameras(std::span<const CameraToGroup> cameras) {
   std::vector<uint32_t> ids(cameras.size());
   std::iota(ids.begin(), ids.end(), 0U);

@@ -18,9 +18,16 @@ namespace lf {
 // An LF camera, as far as groups depend on it. Numbers that are not finite count as 0.
 struct CameraToGroup {
   Vec3 position;
-  Vec3 direction;     // unit vector along the optical axis
-  uint32_t kind = 0;  // only LF cameras of one kind share a group: one image size and pixel layout
+  Vec3 direction;  // unit vector along the optical axis
+  // Only LF cameras of one kind share a group: one image size and exposure.
+  uint32_t kind = 0;
 };
+
+// Returns the number of each exposure (light_field/model/brackets.h), 0 for the least one. Those of
+// brackets have different numbers, because a dark image does not predict a bright one: successive
+// numbers are more than half a stop apart, with no exposure between. Slightly different gains of
+// cameras have one number.
+std::vector<uint32_t> ExposureNumbers(std::span<const double> exposures);
 
 // An LF image of a group.
 struct GroupMember {

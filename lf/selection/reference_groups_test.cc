@@ -330,5 +330,15 @@ TEST(ReferenceGroups, AMillionCamerasAreGrouped) {
   EXPECT_LT(groups.size(), cameras.size() / 14);
 }
 
+TEST(ExposureNumbers, TellBracketsApartAndNotSlightlyDifferentGains) {
+  EXPECT_TRUE(ExposureNumbers({}).empty());
+  const std::vector<double> brackets = {1, 0.25, 4, 1.05, 0.26, 3.9};
+  EXPECT_EQ(ExposureNumbers(brackets), (std::vector<uint32_t>{1, 0, 2, 1, 0, 2}));
+  // Gains that pass slowly from one to another are of one kind.
+  std::vector<double> slow;
+  for (int i = 0; i < 100; ++i) slow.push_back(std::exp2(0.04 * i));
+  EXPECT_EQ(ExposureNumbers(slow), std::vector<uint32_t>(100, 0));
+}
+
 }  // namespace
 }  // namespace lf

@@ -109,6 +109,30 @@ TEST_F(GroupCoderTest, PartsOfImagesArePredicted) {
   ExpectDecodes(group);
 }
 
+TEST_F(GroupCoderTest, PartsOfDifferentSizesShareAGroup) {
+  MakeCapture<uint8_t>(PixelLayout::kRgb);
+  // As --needed-pixels asks for, when a camera moves.
+  for (int i = 0; i < kColumns * kRows; ++i)
+    source_.rects[static_cast<size_t>(i)] = {i % 7, i % 5, 80 + i % 16, 60 + i % 12};
+  const std::vector<CodedGroup> groups = Encode();
+  ASSERT_EQ(groups.size(), 1U);
+  EXPECT_GT(PredictedCount(groups[0]), 14U);
+  EXPECT_LT(static_cast<double>(groups[0].bytes),
+            0.75 * static_cast<double>(AloneBytes(groups[0])));
+  ExpectDecodes(groups[0]);
+}
+
+TEST_F(GroupCoderTest, ExposuresOfBracketsHaveGroupsOfTheirOwn) {
+  MakeCapture<uint8_t>(PixelLayout::kRgb);
+  for (size_t i = 1; i < source_.light_field.size(); i += 2)
+    source_.light_field.cameras[i].gain = 4;
+  const ReferenceGroups groups = GroupsOf(source_);
+  ASSERT_GE(groups.size(), 2U);
+  for (size_t g = 0; g < groups.size(); ++g)
+    for (const GroupMember& member : groups.Group(g))
+      EXPECT_EQ(member.id.value % 2, groups.Group(g)[0].id.value % 2) << g;
+}
+
 TEST_F(GroupCoderTest, AnImageThatCannotBeReadIsLeftOut) {
   MakeCapture<uint8_t>(PixelLayout::kRgb);
   const ReferenceGroups groups = GroupsOf(source_);
@@ -165,7 +189,9 @@ TEST_F(GroupCoderTest, AnImageOfAnotherKindIsNoReferenceImage) {
   for (const CodedMember& member : group.members) {
     const std::vector<LfImageId>& references = member.image.references;
     EXPECT_EQ(std::count(references.begin(), references.end(), key), 0);
-    if (member.id == leaf || member.id == key) EXPECT_TRUE(references.empty());
+    if (member.id == leaf || member.id == key) {
+      EXPECT_TRUE(references.empty());
+    }
   }
   ExpectDecodes(group);
 }

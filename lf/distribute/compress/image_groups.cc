@@ -3,22 +3,28 @@
 
 #include <algorithm>
 #include <map>
-#include <utility>
+#include <tuple>
 
+#include "lf/light_field/model/brackets.h"
 #include "lf/storage/load/recorded_image.h"
 
 namespace lf {
-
 ReferenceGroups GroupsOf(const CompressSource& source) {
   const std::vector<LfImageId> ids = source.CompressedIds();
-  std::map<std::pair<int, int>, uint32_t> kinds;  // by size
+  std::vector<double> exposures;
+  exposures.reserve(ids.size());
+  for (const LfImageId id : ids)
+    exposures.push_back(ExposureOf(source.light_field.cameras[id.value]));
+  const std::vector<uint32_t> numbers = ExposureNumbers(exposures);
+  std::map<std::tuple<int, int, uint32_t>, uint32_t> kinds;  // by size and exposure
   std::vector<CameraToGroup> cameras;
   cameras.reserve(ids.size());
-  for (const LfImageId id : ids) {
-    const PixelRect rect = RectToRecord(source.light_field, id, source.rects[id.value]);
-    const RigidTransform& pose = source.light_field.cameras[id.value].cam_from_world;
+  for (size_t i = 0; i < ids.size(); ++i) {
+    const Intrinsics& size = source.light_field.Camera(ids[i]).intrinsics;
+    const RigidTransform& pose = source.light_field.cameras[ids[i].value].cam_from_world;
     const auto next = static_cast<uint32_t>(kinds.size());
-    const uint32_t kind = kinds.try_emplace({rect.width(), rect.height()}, next).first->second;
+    const uint32_t kind =
+        kinds.try_emplace({size.width_px, size.height_px, numbers[i]}, next).first->second;
     cameras.push_back({-(pose.rotation.transpose() * pose.translation),
                        pose.rotation.transpose() * Vec3::UnitZ(), kind});
   }

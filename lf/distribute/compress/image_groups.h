@@ -12,8 +12,9 @@
 
 namespace lf {
 
-// Returns groups of the LF images that are not left out. LF images share a group only if as many
-// pixels of them are encoded. GroupMember::id is the id in the light field.
+// Returns groups of the LF images that are not left out. LF images share a group only if they have
+// the same size and about the same exposure: a dark image does not predict a bright one.
+// GroupMember::id is the id in the light field.
 ReferenceGroups GroupsOf(const CompressSource& source);
 
 // Returns some groups that are spread over all, ascending: enough for `image_count` LF images.
