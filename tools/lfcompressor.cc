@@ -49,10 +49,10 @@ constexpr lf::HelpTexts kHelp = {
   lfrenderer capture.lfs path.yaml -o frames                  # a store is a LIGHTFIELD
   lfrenderer packages/package-0000.lfp --lightfield film.lfs -o frames)",
     .details =
-        R"(STORE.lfs contains the LF images, encoded one by one, and their calibration. It is one file that
-every program accepts as LIGHTFIELD (doc/formats/packed_store.md). Until it is complete its name is
-STORE.lfs.unfinished. Ctrl-C, kill -9 or a crash lose about two seconds of work at most; --resume
-continues.
+        R"(STORE.lfs contains the LF images, each encoded by itself or in groups, and their calibration. It is
+one file that every program accepts as LIGHTFIELD (doc/formats/packed_store.md). Until it is
+complete its name is STORE.lfs.unfinished. Ctrl-C, kill -9 or a crash lose about two seconds of
+work, or the groups in work; --resume continues.
 
 A store of packages has the calibration of all LF cameras, and the LF images that the packages need.
 A film of these packages that is rendered from the store alone has the bits of a film that is
@@ -135,7 +135,8 @@ void AddQuality(CLI::App& app, Arguments& a) {
       "group: as default, but LF images are predicted from a few others nearby where that saves a "
       "tenth. Clean captures take about half the bytes; decoding takes about four times as long\n"
       "group-lossless: the same without loss\n"
-      "auto: what takes the fewest bytes for a sample: group, default, or recorded");
+      "auto: tries a sample, and takes group if prediction saves a tenth, otherwise default, or "
+      "recorded if all files are smaller");
   quality.AddChoice(
       "--entropy", a.codec.entropy, {"auto", "packed", "contexts"},
       "How wavelet coefficients become bytes\n"
@@ -350,9 +351,12 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   if (input.use) options.use = &*input.use;
   options.interrupted = &interrupted;
   lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), "LF images");
+  std::optional<lf::CompressPhase> phase;
   LF_ASSIGN_OR_RETURN(
       const lf::CompressReport report,
       lf::Compress(input.source, options, pool, [&](const lf::CompressProgress& now) {
+        if (phase != now.phase) meter.Restart(now.done);
+        phase = now.phase;
         meter.Update(now.done, now.total, lf::ProgressDetail(now));
       }));
   const lf::Result<void> end = lf::EndWithMissing(

@@ -178,7 +178,8 @@ def compress(field: LightField, store: FilePath, *, profile: str = "default", th
         How LF images are encoded. "recorded" keeps image files as they are; "default" and "lossless" keep those that
         are smaller than their encoded images. "group" and "group-lossless" predict LF images from others nearby
         where that saves a tenth: about half the bytes for clean captures, and about four times as long to decode.
-        "auto" takes "group", "default" or "recorded", whichever takes the fewest bytes for a sample.
+        "auto" tries a sample: it takes "group" if prediction saves a tenth of the bytes, otherwise "default", or
+        "recorded" if all files are smaller.
     threshold : float, optional
         Wavelet coefficients below it, in 1/255 of the range of values, are dropped; by default that of the profile.
     target_psnr : float, optional
@@ -205,7 +206,7 @@ def compress(field: LightField, store: FilePath, *, profile: str = "default", th
         Number of threads; 0: one for each processor.
     progress : bool or callable, optional
         Called with the number of LF images that were encoded, and their total number; then, from 0 again, with those
-        that were verified. True: a bar for each.
+        that were verified. The profile "auto" first counts the LF images of its sample. True: a bar for each.
 
     Returns
     -------

@@ -169,7 +169,7 @@ std::string CompressField(const OpenedField& field, const std::string& name,
   return CallWithoutGil(
       [&] {
         const auto progress = [&](const CompressProgress& now) {
-          work.signals.SetProgress({now.done, now.total, now.is_verifying ? 1 : 0});
+          work.signals.SetProgress({now.done, now.total, static_cast<int>(now.phase)});
         };
         const CompressReport report =
             Take(Compress(Take(SourceOfAll(field.light_field)), options, pool, progress));

@@ -103,6 +103,19 @@ def test_stores_are_those_of_lfcompressor(field, capture, run, tmp_path):
         ours.image(0, stored=True)
 
 
+def test_stores_of_groups_give_the_images_and_frames_of_the_files(field, path, tmp_path):
+    facts = lf.compress(field, tmp_path / "a.lfs", profile="group-lossless", verify=True)
+    assert facts["predicted"] > 30 and facts["psnr_db"] == "exact"
+    store = lf.open(tmp_path / "a.lfs")
+    assert all(np.array_equal(store.image(i), field.image(i)) for i in range(49))
+    ours, theirs = (lf.render(lights, path, frames=[2]).rgb for lights in (store, field))
+    assert np.array_equal(ours, theirs)
+    told = []
+    facts = lf.compress(field, tmp_path / "b.lfs", profile="auto", progress=lambda *now: told.append(now))
+    assert "in groups" in facts["codec"] and facts["sample"]["bytes_in_groups"] < facts["sample"]["bytes_alone"]
+    assert told[-1] == (49, 49) and (facts["sample"]["lf_images"],) * 2 in told
+
+
 def test_broken_images_are_left_out_of_stores_with_a_warning(capture, tmp_path):
     folder = shutil.copytree(capture, tmp_path / "field")
     (folder / "images/0005.png").write_bytes(b"no picture")

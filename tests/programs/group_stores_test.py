@@ -221,7 +221,7 @@ class GroupStoresTest(ProgramTestCase):
         self.assertLess(report["sample"]["bytes_in_groups"], report["sample"]["bytes_alone"])
         self.assertIn("chosen", self.succeeds(COMPRESSOR, field, "-o", self.store, "--profile", "auto",
                                               "--overwrite"))
-        # Mosaics are also predicted.
+        # Mosaics are predicted also.
         mosaic = self.folder / "mosaic"
         self.succeeds(SYNTH, "still-life", "-o", mosaic, "--count", COUNT, "--size", "120x80", "--bayer")
         single = self.compress(mosaic, "-o", self.folder / "single.lfs", "--reencode")

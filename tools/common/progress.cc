@@ -47,6 +47,11 @@ ProgressMeter::~ProgressMeter() {
   if (style_ == ProgressStyle::kBar) LogProgressLine("");
 }
 
+void ProgressMeter::Restart(uint64_t done) {
+  start_ = Clock::now();
+  done_before_ = done;
+}
+
 // Returns true if it is time to print. It is fast, so callers ask before they format texts.
 bool ProgressMeter::IsDue() const {
   if (style_ == ProgressStyle::kNone) return false;
@@ -83,8 +88,10 @@ void ProgressMeter::Print(uint64_t done, uint64_t total, const std::string& deta
       LogMessage(LogLevel::kInfo, line);
     return;
   }
-  const double rate = static_cast<double>(done) / elapsed_s;
-  const double left_s = share > 0 ? elapsed_s * (1 - share) / share : 0;
+  const auto count = static_cast<double>(done > done_before_ ? done - done_before_ : 0);
+  const auto left = static_cast<double>(total > done ? total - done : 0);
+  const double rate = elapsed_s > 0 ? count / elapsed_s : 0;
+  const double left_s = count > 0 ? elapsed_s * left / count : 0;
   if (style_ == ProgressStyle::kJson) {
     LogMessage(
         LogLevel::kInfo,
@@ -92,8 +99,9 @@ void ProgressMeter::Print(uint64_t done, uint64_t total, const std::string& deta
                     unit_, done, total, rate, left_s, json_counts));
     return;
   }
-  const std::string numbers = fmt::format("{}  {:.0f} %  {}{}/s  {} left", detail, 100 * share,
-                                          ShortNumber(rate), unit_, ShortDuration(left_s));
+  std::string numbers = fmt::format("{}  {:.0f} %", detail, 100 * share);
+  if (count > 0)
+    numbers += fmt::format("  {}{}/s  {} left", ShortNumber(rate), unit_, ShortDuration(left_s));
   if (style_ == ProgressStyle::kPlain) {
     LogMessage(LogLevel::kInfo, numbers);
     return;

@@ -39,6 +39,9 @@ class ProgressMeter {
   ProgressMeter(ProgressStyle style, std::string unit);
   ~ProgressMeter();
 
+  // Begins a phase that counts anew: rate and time left are those of the units after the first
+  // `done`, which were done before.
+  void Restart(uint64_t done);
   // Reports `done` of `total` units; prints nothing if `total` is 0. `detail` is shown before the
   // numbers; JSON leaves it out. Cheap: prints at most a few times per second (bar), once per
   // second (json) or every few seconds (plain).
@@ -56,6 +59,7 @@ class ProgressMeter {
   std::string unit_;
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_;
+  uint64_t done_before_ = 0;  // Restart()
 };
 
 // Returns the lines that tell a farm the progress. The style must be that of a farm.

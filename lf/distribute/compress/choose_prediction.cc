@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -23,14 +24,23 @@ bool SampledBytes::GroupsAreBetter() const {
 
 Result<SampledBytes> SampleBytes(const CompressSource& source, const CodecSettings& settings,
                                  const ThresholdFactors& factors, ThreadPool& pool,
-                                 const std::function<bool()>& is_interrupted) {
+                                 const std::function<bool()>& is_interrupted,
+                                 const std::function<void(size_t done, size_t total)>& progress) {
   const ImageCoder coder(source.light_field.encoding, settings, KeepFiles::kNone, is_interrupted);
   const GroupCoder group_coder(source, coder, factors, is_interrupted);
   const ReferenceGroups groups = GroupsOf(source);
   const std::vector<size_t> sample = SampleOf(groups, kSampled);
+  size_t done = 0, total = 0;  // LF images
+  for (const size_t group : sample) total += groups.Group(group).size();
+  progress(done, total);
+  std::mutex mutex;  // guards `done`, and orders the calls of progress()
+  const auto encoded = [&] {
+    const std::lock_guard lock(mutex);
+    progress(++done, total);
+  };
   std::vector<std::optional<Result<CodedGroup>>> coded(sample.size());
   pool.ForEach(sample.size(), [&](size_t i) {
-    if (!is_interrupted()) coded[i] = group_coder.Encode(groups.Group(sample[i]));
+    if (!is_interrupted()) coded[i] = group_coder.Encode(groups.Group(sample[i]), encoded);
   });
   SampledBytes bytes;
   std::optional<Error> unreadable;

@@ -17,13 +17,14 @@ namespace lf {
 // Sizes of a sample of LF images, encoded in different ways.
 struct SampledBytes {
   size_t image_count = 0;
-  size_t file_count = 0;   // LF images whose files are at most as large as their encoded images
-  uint64_t alone = 0;      // each LF image encoded by itself, or its file if that is smaller
+  size_t file_count = 0;  // LF images whose files are at most as large as their encoded images
+  // Each LF image encoded by itself, with the coder of groups, or its file if that is smaller.
+  uint64_t alone = 0;
   uint64_t in_groups = 0;  // predicted from others of their groups, where that is worth it
 
   // Returns true if groups save a tenth of the bytes.
   bool GroupsAreBetter() const;
-  // Returns true if the files are always the smaller ones.
+  // Returns true if all files are smaller.
   bool FilesAreBetter() const { return !GroupsAreBetter() && file_count == image_count; }
 };
 
@@ -31,8 +32,10 @@ struct SampledBytes {
 // depend on the number of threads. kInput: no LF image of the sample can be read. kInterrupted:
 // is_interrupted() returned true.
 //   settings  profile kDefault or kLossless; the threshold is in grey steps
+//   progress  called with the number of LF images that are encoded, from 0, and that of the sample
 Result<SampledBytes> SampleBytes(const CompressSource& source, const CodecSettings& settings,
                                  const ThresholdFactors& factors, ThreadPool& pool,
-                                 const std::function<bool()>& is_interrupted);
+                                 const std::function<bool()>& is_interrupted,
+                                 const std::function<void(size_t done, size_t total)>& progress);
 
 }  // namespace lf

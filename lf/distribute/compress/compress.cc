@@ -123,6 +123,9 @@ class Compressor {
   void AddGroup(PackedStoreWriter* writer, std::span<const GroupMember> group);
   VerifyOptions Verification() const;
   Result<void> Verify();
+  void Show() const {
+    if (progress_) progress_(now_);
+  }
   bool IsInterrupted() const { return options_.interrupted && *options_.interrupted; }
   Error Interrupted() const;
 
@@ -192,7 +195,7 @@ void Compressor::AddOne(PackedStoreWriter* writer, LfImageId id) {
   if (error && error->kind == ErrorKind::kInterrupted) return;
   ++now_.done;
   if (!error) Count(*coded);
-  if (progress_) progress_(now_);
+  Show();
 }
 
 void Compressor::AddAlone(PackedStoreWriter* writer, std::span<const LfImageId> ids) {
@@ -209,12 +212,12 @@ void Compressor::AddAlone(PackedStoreWriter* writer, std::span<const LfImageId> 
 void Compressor::AddGroup(PackedStoreWriter* writer, std::span<const GroupMember> group) {
   if (!Goes()) return;
   const ThreadCpuTimer timer;
-  size_t shown = 0;  // number of LF images that progress_() was told of
+  size_t shown = 0;  // number of LF images that Show() counted
   const auto encoded = [&] {
     const std::lock_guard lock(mutex_);
     ++shown;
     ++now_.done;
-    if (progress_) progress_(now_);
+    Show();
   };
   const Result<CodedGroup> coded = group_coder_->Encode(group, encoded);
   std::optional<Error> error;
@@ -358,6 +361,7 @@ Result<void> Compressor::Write(FileLock lock) {
   report_.resumed_count = ids_.size() - ids.size();
   now_.total = ids_.size();
   now_.done = report_.resumed_count;
+  Show();
   LogDebug("{}: {} LF images to be encoded, {} are encoded; codec {}; {} threads",
            options_.store.string(), ids.size(), report_.resumed_count, plan_.codec,
            pool_.thread_count());
@@ -392,11 +396,12 @@ VerifyOptions Compressor::Verification() const {
 }
 
 Result<void> Compressor::Verify() {
-  now_ = {0, ids_.size(), 0, 0, true};
+  now_ = {0, ids_.size(), 0, 0, CompressPhase::kVerifying};
+  Show();
   LF_ASSIGN_OR_RETURN(const size_t verified,
                       VerifyStore(source_, Verification(), pool_, [&](size_t done) {
                         now_.done = done;
-                        if (progress_) progress_(now_);
+                        Show();
                       }));
   report_.verified_count = verified;
   return {};
@@ -463,8 +468,16 @@ Result<void> Compressor::Choose() {
   if (!copied_ && options_.prediction == Prediction::kChosen) {
     CodecSettings of_groups = encoding_.settings;
     of_groups.entropy = options_.group_entropy;
-    LF_ASSIGN_OR_RETURN(report_.sample, SampleBytes(source_, of_groups, factors_, pool_,
-                                                    [this] { return IsInterrupted(); }));
+    now_.phase = CompressPhase::kChoosing;
+    LF_ASSIGN_OR_RETURN(report_.sample,
+                        SampleBytes(
+                            source_, of_groups, factors_, pool_, [this] { return IsInterrupted(); },
+                            [this](size_t done, size_t total) {
+                              now_.done = done;
+                              now_.total = total;
+                              Show();
+                            }));
+    now_ = {};
     if (report_.sample->GroupsAreBetter()) {
       encoding_.files = KeepFiles::kNone;
       encoding_.in_groups = true;

@@ -23,12 +23,12 @@
 
 namespace lf {
 
-// The prediction of LF images from others of their group (selection/reference_groups.h).
+// Says if LF images are predicted from others of their group (selection/reference_groups.h).
 enum class Prediction : uint8_t {
   kNone,    // every LF image is encoded by itself
   kGroups,  // LF images are predicted where that saves a tenth of the bytes
-  // Whichever takes the fewest bytes for a sample of the LF images: kGroups; kNone, and files that
-  // are smaller are kept; or KeepFiles::kAll.
+  // Decided by a sample of the LF images: kGroups if prediction saves a tenth of its bytes;
+  // otherwise kNone, or KeepFiles::kAll if all files of the sample are smaller.
   kChosen,
 };
 
@@ -68,15 +68,22 @@ struct CompressOptions {
   const std::atomic<bool>* interrupted = nullptr;
 };
 
+// Each phase counts anew.
+enum class CompressPhase : uint8_t {
+  kChoosing,   // a sample of the LF images is encoded (Prediction::kChosen)
+  kEncoding,   // the LF images are encoded or copied
+  kVerifying,  // the LF images are read back (CompressOptions::verify)
+};
+
 struct CompressProgress {
-  // Number of LF images that are done: encoded, by this call or an earlier one, or found
-  // unreadable; or verified if is_verifying.
+  // Number of LF images that are done in this phase. Those that an earlier call has encoded, and
+  // those that were found unreadable, count as encoded.
   size_t done = 0;
   size_t total = 0;
   // Size of the pixels of the LF images that this call encoded, in the number type of their files.
   uint64_t pixel_bytes = 0;
   uint64_t code_bytes = 0;
-  bool is_verifying = false;
+  CompressPhase phase = CompressPhase::kEncoding;
 };
 
 struct CompressReport {
@@ -119,13 +126,13 @@ struct CompressReport {
 
 // Compresses the LF images of `source` into options.store. If its light field is a packed store,
 // copies their encoded images, with the settings of that store in place of options.codec and files.
-// kUsage: wrong settings, the store exists
-// and no option says what to do with it, its name belongs to another file or is that of the store
-// that is copied, it has predicted LF images and by_resolution is true, or no threshold reaches
-// target_psnr_db. kInput: no LF image can be read, or
-// `strict` is true and one cannot be read; the files are not those that an unfinished store was
+// kUsage: wrong settings, the store exists and no option says what to do with it, its name belongs
+// to another file or is that of the store that is copied, that has predicted LF images and
+// by_resolution is true, or no threshold reaches target_psnr_db. kInput: no LF image can be read,
+// or `strict` is true and one cannot be read; the files are not those that an unfinished store was
 // made from; or the store differs from the result of encoding its LF images (`verify`). kOutput:
 // the disk or the memory fails. kInterrupted: finished work is kept.
+//   progress  called at the beginning of each phase, and after each LF image; may be empty
 Result<CompressReport> Compress(const CompressSource& source, const CompressOptions& options,
                                 ThreadPool& pool,
                                 const std::function<void(const CompressProgress&)>& progress);

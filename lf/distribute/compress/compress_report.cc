@@ -32,7 +32,8 @@ double MegabytesPerSecond(uint64_t bytes, double seconds) {
 }  // namespace
 
 std::string ProgressDetail(const CompressProgress& now) {
-  if (now.is_verifying) return "verifying";
+  if (now.phase == CompressPhase::kChoosing) return "choosing";
+  if (now.phase == CompressPhase::kVerifying) return "verifying";
   return now.code_bytes == 0 ? std::string("coding")
                              : fmt::format("{:.1f} : 1", Ratio(now.pixel_bytes, now.code_bytes));
 }
@@ -51,11 +52,11 @@ std::string CompressText(const CompressReport& report, const CompressOptions& op
         report.left_out_count);
   if (report.sample)
     text += fmt::format(
-        "chosen    of {} LF images, groups have {:.2f} of the bytes of single images{}\n",
+        "chosen    by {} LF images: groups take {:.2f} of the bytes of single images{}\n",
         report.sample->image_count, Ratio(report.sample->in_groups, report.sample->alone),
         report.sample->file_count == 0
             ? std::string()
-            : fmt::format(", or of the {} files that are smaller", report.sample->file_count));
+            : fmt::format(" and of the {} files that are smaller", report.sample->file_count));
   if (report.was_there) text += "existed already: nothing was written\n";
   if (report.resumed_count > 0)
     text += fmt::format(

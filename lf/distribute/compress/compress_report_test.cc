@@ -59,7 +59,8 @@ TEST_F(CompressReportTest, TheFirstMissingImageIsNamed) {
 TEST_F(CompressReportTest, ProgressHasTheRatioOnceItIsKnown) {
   EXPECT_EQ(ProgressDetail({}), "coding");
   EXPECT_EQ(ProgressDetail({.pixel_bytes = 124, .code_bytes = 10}), "12.4 : 1");
-  EXPECT_EQ(ProgressDetail({.code_bytes = 10, .is_verifying = true}), "verifying");
+  EXPECT_EQ(ProgressDetail({.code_bytes = 10, .phase = CompressPhase::kVerifying}), "verifying");
+  EXPECT_EQ(ProgressDetail({.phase = CompressPhase::kChoosing}), "choosing");
 }
 
 }  // namespace

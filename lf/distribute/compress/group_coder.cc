@@ -226,7 +226,7 @@ Result<void> GroupCoder::Add(const GroupMember& member, Work* work) const {
     work->is_given_up =
         work->predicted_count >= kTried && work->predicted_bytes > work->of_them_alone;
   }
-  // If prediction may not pay, the image is encoded by itself to compare.
+  // The image is encoded by itself to compare, unless prediction clearly pays.
   constexpr double kClear = 0.8;
   const bool is_clear =
       is_predicted && static_cast<double>(coded.image.code.size()) < kClear * by_itself_bytes;

@@ -38,7 +38,7 @@ struct CodedGroup {
   std::vector<CodedMember> members;  // reference images stand before those that need them
   std::vector<Unreadable> unreadable;
   uint64_t bytes = 0;  // size of the encoded images of `members`
-  // Sizes of `members`, each encoded by itself: about those at the error of the group.
+  // About the size of each of `members`, if it were encoded by itself with the error of the group.
   std::vector<uint64_t> bytes_alone;
 };
 
