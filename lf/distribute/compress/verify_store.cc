@@ -231,17 +231,25 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
       interrupted = true;
     else if (!result)
       faults[id.value] = result.error().message;
-    if (!interrupted) progress(++done);
+  };
+  const auto show = [&](size_t count) {
+    const std::lock_guard lock(mutex);
+    done += count;
+    if (!interrupted) progress(done);
   };
   pool.ForEach(in_groups ? groups.size() : ids.size(), [&](size_t i) {
     const LfImageId first = in_groups ? groups.Group(i)[0].id : ids[i];
     if (options.is_interrupted()) return note(first, Error{ErrorKind::kInterrupted, "interrupted"});
-    if (!in_groups) return note(first, verifier->Check(first));
+    if (!in_groups) {
+      note(first, verifier->Check(first));
+      return show(1);
+    }
     const Result<std::vector<Result<void>>> results = verifier->CheckGroup(groups.Group(i));
     if (!results && results.error().kind == ErrorKind::kInterrupted)
       return note(first, results.error());
     for (size_t rank = 0; rank < groups.Group(i).size(); ++rank)
       note(groups.Group(i)[rank].id, results ? (*results)[rank] : Result<void>(results.error()));
+    show(groups.Group(i).size());
   });
   if (interrupted)
     return Error{
