@@ -16,7 +16,7 @@ namespace lf {
 namespace {
 
 // Noise of this many thresholds makes equal thresholds the better ones.
-constexpr double kNoiseOfThreshold = 0.15;
+constexpr double kNoiseOfThreshold = 0.2;
 
 // Number of images that are predicted before a group whose predictions save nothing is given up.
 constexpr size_t kTried = 6;

@@ -209,7 +209,7 @@ TEST_F(GroupCoderTest, StepsAreEqualIfImagesAreNoisy) {
   };
   settings_.threshold = 6;
   EXPECT_LT(key_error(0), 0.7);
-  EXPECT_EQ(key_error(0.012), 1);
+  EXPECT_EQ(key_error(0.016), 1);
 }
 
 TEST_F(GroupCoderTest, AnInterruptionEndsAGroup) {
