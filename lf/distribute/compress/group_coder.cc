@@ -21,6 +21,10 @@ constexpr double kNoiseOfThreshold = 0.2;
 // Number of images that are predicted before a group whose predictions save nothing is given up.
 constexpr size_t kTried = 6;
 
+// A predicted image with less than this share of the expected bytes of the image by itself is not
+// compared with it.
+constexpr double kClear = 0.8;
+
 // How the bytes and the error of images that are encoded alone depend on the threshold.
 struct Rate {
   double bytes_exponent = 0;  // bytes are proportional to the threshold to the power of this
@@ -137,11 +141,12 @@ GroupCoder::GroupCoder(const CompressSource& source, const ImageCoder& coder,
       factors_(factors),
       is_interrupted_(std::move(is_interrupted)) {}
 
-// Encodes an image from the anchors of its references that have its layout and number type. Leaves
-// *coded as it is if there is none.
-Result<void> GroupCoder::Predict(const RecordedImage& image, const GroupMember& member,
-                                 double factor, Work* work, CodedMember* coded,
-                                 DecodedPart* decoded) const {
+// Encodes an image from the anchors of its references that have its layout and number type. nullopt
+// if there is none.
+Result<std::optional<GroupCoder::Candidate>> GroupCoder::Predicted(const RecordedImage& image,
+                                                                   const GroupMember& member,
+                                                                   double factor,
+                                                                   Work* work) const {
   const StoredValues values = coder_.Prepared(image).values;
   std::vector<const Work::Anchor*> anchors;
   for (const uint8_t rank : member.References()) {
@@ -149,7 +154,7 @@ Result<void> GroupCoder::Predict(const RecordedImage& image, const GroupMember& 
     if (anchor && anchor->layout == image.layout && anchor->values == values)
       anchors.push_back(&*anchor);
   }
-  if (anchors.empty() || !CanBePredicted(image)) return {};
+  if (anchors.empty() || !CanBePredicted(image)) return std::optional<Candidate>();
   const PinholeView view = ViewToPredict(source_, member.id);
   if (!work->depths) {
     const CodecPixels pixels = coder_.Prepared(image).pixels;
@@ -170,18 +175,68 @@ Result<void> GroupCoder::Predict(const RecordedImage& image, const GroupMember& 
     ids.push_back(anchor->id);
     parts.push_back(&anchor->decoded);
   }
-  if (references.empty()) return {};
-  LF_ASSIGN_OR_RETURN(CodedImage predicted,
+  if (references.empty()) return std::optional<Candidate>();
+  Candidate candidate;
+  LF_ASSIGN_OR_RETURN(candidate.image,
                       coder_.CodeFrom(image, references, PredictionSettings(), factor));
-  predicted.references = std::move(ids);
-  const Result<void> result = DecodePredicted(
-      predicted.code, parts, {0, 0, image.rect.width(), image.rect.height()}, decoded);
+  candidate.image.references = std::move(ids);
+  const Result<void> result =
+      DecodePredicted(candidate.image.code, parts, {0, 0, image.rect.width(), image.rect.height()},
+                      &candidate.decoded);
   LF_CHECK(result.has_value());
-  coded->lost = coder_.ErrorOf(image, predicted.values, *decoded);
-  coded->image = std::move(predicted);
-  return {};
+  return std::optional(std::move(candidate));
 }
 
+// Encodes an image by itself.
+Result<GroupCoder::Candidate> GroupCoder::Single(const RecordedImage& image, double factor) const {
+  Candidate candidate;
+  LF_ASSIGN_OR_RETURN(candidate.image, coder_.Code(image, factor));
+  const Result<void> result = DecodeImage(candidate.image.code, &candidate.decoded);
+  LF_CHECK(result.has_value());
+  return candidate;
+}
+
+// Returns the steps of a group, which depend on the noise of its first image.
+GroupSteps GroupCoder::StepsFor(const RecordedImage& image) const {
+  const CodecPixels pixels = coder_.Prepared(image).pixels;
+  const BrightnessRange range = RangeOfPixels(pixels);
+  const double noise = range.unit() * NoiseOf(BrightnessOfPixels(pixels, image.layout, range));
+  const bool is_noisy = noise > kNoiseOfThreshold * coder_.SettingsFor(image, 1).threshold;
+  return is_noisy ? GroupSteps::ForNoise() : GroupSteps();
+}
+
+// Returns an image predicted, or by itself with the same threshold if that is not clearly longer.
+// nullopt if the group is given up.
+//   of_use       factor of the threshold without that of the group's steps
+//   alone_bytes  size of the image by itself with this threshold
+Result<std::optional<GroupCoder::Candidate>> GroupCoder::BestOf(const RecordedImage& image,
+                                                                const GroupMember& member,
+                                                                double of_use, size_t alone_bytes,
+                                                                Work* work) const {
+  if (work->is_given_up) return std::optional<Candidate>();
+  const double step = work->steps->Of(work->rank, work->group_size);
+  LF_ASSIGN_OR_RETURN(std::optional<Candidate> predicted,
+                      Predicted(image, member, of_use * step, work));
+  if (predicted) {
+    const auto bytes = static_cast<double>(predicted->image.code.size());
+    // About the size of the image by itself with the same threshold.
+    const double single_bytes = static_cast<double>(alone_bytes) *
+                                (work->rate ? std::pow(step, work->rate->bytes_exponent) : 1);
+    ++work->predicted_count;
+    work->predicted_bytes += bytes;
+    work->of_them_alone += single_bytes;
+    work->is_given_up =
+        work->predicted_count >= kTried && work->predicted_bytes > work->of_them_alone;
+    if (work->is_given_up || bytes < kClear * single_bytes) return predicted;
+  }
+  LF_ASSIGN_OR_RETURN(Candidate single, Single(image, of_use * step));
+  if (predicted && static_cast<double>(predicted->image.code.size()) <=
+                       kMostPredicted * static_cast<double>(single.image.code.size()))
+    return predicted;
+  return std::optional(std::move(single));
+}
+
+// Reads and encodes an image of the group.
 Result<void> GroupCoder::Add(const GroupMember& member, Work* work) const {
   const PixelRect rect =
       RectToRecord(source_.light_field, member.id, source_.rects[member.id.value]);
@@ -193,61 +248,28 @@ Result<void> GroupCoder::Add(const GroupMember& member, Work* work) const {
   LF_RETURN_IF_ERROR(read);
   const RecordedImage& image = *read;
   const double of_use = factors_.Of(member.id.value);
-  CodedMember alone{member.id, {}, {}, 0, image.is_rounded};
-  alone.pixel_bytes =
-      std::visit([](const auto& pixels) { return pixels.size_bytes(); }, image.pixels);
-  LF_ASSIGN_OR_RETURN(alone.image, coder_.Code(image, of_use));
-  LF_ASSIGN_OR_RETURN(alone.lost, coder_.ErrorOf(image, alone.image));
-  const uint64_t alone_bytes = alone.image.code.size();
-  work->group.bytes_alone.push_back(alone_bytes + alone.image.mask.size());
+  const auto member_of = [&](CodedImage coded, const CodeError& lost) {
+    const uint64_t pixel_bytes =
+        std::visit([](const auto& pixels) { return pixels.size_bytes(); }, image.pixels);
+    return CodedMember{member.id, std::move(coded), lost, pixel_bytes, image.is_rounded};
+  };
+  LF_ASSIGN_OR_RETURN(CodedImage coded_alone, coder_.Code(image, of_use));
+  LF_ASSIGN_OR_RETURN(const CodeError lost_alone, coder_.ErrorOf(image, coded_alone));
+  CodedMember& alone = work->alone.emplace_back(member_of(std::move(coded_alone), lost_alone));
+  work->group.bytes_alone.push_back(alone.image.code.size() + alone.image.mask.size());
 
-  if (!work->steps) {
-    const CodecPixels pixels = coder_.Prepared(image).pixels;
-    const BrightnessRange range = RangeOfPixels(pixels);
-    const double noise = range.unit() * NoiseOf(BrightnessOfPixels(pixels, image.layout, range));
-    const bool is_noisy = noise > kNoiseOfThreshold * coder_.SettingsFor(image, 1).threshold;
-    work->steps = is_noisy ? GroupSteps::ForNoise() : GroupSteps();
-  }
-  const double factor = of_use * work->steps->Of(work->rank, work->group_size);
-  CodedMember coded = alone;
-  coded.image.code.clear();
-  DecodedPart decoded;
-  if (!work->is_given_up)
-    LF_RETURN_IF_ERROR(Predict(image, member, factor, work, &coded, &decoded));
-  const bool is_predicted = !coded.image.code.empty();
-  // About the size of the image if it is encoded by itself with the threshold of `coded`.
-  const double by_itself_bytes =
-      static_cast<double>(alone_bytes) *
-      (work->rate ? std::pow(factor / of_use, work->rate->bytes_exponent) : 1);
-  if (is_predicted) {
-    ++work->predicted_count;
-    work->predicted_bytes += static_cast<double>(coded.image.code.size());
-    work->of_them_alone += by_itself_bytes;
-    work->is_given_up =
-        work->predicted_count >= kTried && work->predicted_bytes > work->of_them_alone;
-  }
-  // The image is encoded by itself to compare, unless prediction clearly pays.
-  constexpr double kClear = 0.8;
-  const bool is_clear =
-      is_predicted && static_cast<double>(coded.image.code.size()) < kClear * by_itself_bytes;
-  if (!is_clear && !work->is_given_up) {
-    LF_ASSIGN_OR_RETURN(CodedImage by_itself, factor == of_use ? Result<CodedImage>(alone.image)
-                                                               : coder_.Code(image, factor));
-    if (!is_predicted || static_cast<double>(coded.image.code.size()) >
-                             kMostPredicted * static_cast<double>(by_itself.code.size())) {
-      coded.image = std::move(by_itself);
-      LF_RETURN_IF_ERROR(DecodeImage(coded.image.code, &decoded));
-      coded.lost = coder_.ErrorOf(image, coded.image.values, decoded);
-    }
-  }
-  if (!work->rate) work->rate = RateOf(alone, coded, factor / of_use);
-  if (!coded.image.code.empty()) {
-    work->group.bytes += coded.image.code.size() + coded.image.mask.size();
-    if (work->rank < work->anchors.size())
-      work->anchors[work->rank] = {member.id, std::move(decoded), image.layout, coded.image.values};
-    work->group.members.push_back(std::move(coded));
-  }
-  work->alone.push_back(std::move(alone));
+  if (!work->steps) work->steps = StepsFor(image);
+  LF_ASSIGN_OR_RETURN(std::optional<Candidate> best,
+                      BestOf(image, member, of_use, alone.image.code.size(), work));
+  if (!best) return {};
+  const StoredValues values = best->image.values;
+  const CodeError lost = coder_.ErrorOf(image, values, best->decoded);
+  work->group.members.push_back(member_of(std::move(best->image), lost));
+  const CodedMember& coded = work->group.members.back();
+  work->group.bytes += coded.image.code.size() + coded.image.mask.size();
+  if (!work->rate) work->rate = RateOf(alone, coded, work->steps->Of(work->rank, work->group_size));
+  if (work->rank < work->anchors.size())
+    work->anchors[work->rank] = {member.id, std::move(best->decoded), image.layout, values};
   return {};
 }
 

@@ -85,9 +85,17 @@ class GroupCoder {
 
  private:
   struct Work;
+  struct Candidate {
+    CodedImage image;
+    DecodedPart decoded;  // its pixels
+  };
+  Result<std::optional<Candidate>> Predicted(const RecordedImage& image, const GroupMember& member,
+                                             double factor, Work* work) const;
+  Result<Candidate> Single(const RecordedImage& image, double factor) const;
+  GroupSteps StepsFor(const RecordedImage& image) const;
+  Result<std::optional<Candidate>> BestOf(const RecordedImage& image, const GroupMember& member,
+                                          double of_use, size_t alone_bytes, Work* work) const;
   Result<void> Add(const GroupMember& member, Work* work) const;
-  Result<void> Predict(const RecordedImage& image, const GroupMember& member, double factor,
-                       Work* work, CodedMember* coded, DecodedPart* decoded) const;
 
   const CompressSource& source_;
   const ImageCoder& coder_;
