@@ -86,6 +86,7 @@ class TinyCalls:
         synth, convert = self.synth(out), self.words("lfimport", self.field, "-o", out)
         store = self.words("lfcompressor", self.field, "-o", out.with_suffix(".lfs"))
         shards = [*store, "--shard-size", "4k"]
+        groups = [*shards, "--profile", "group-lossless"]
         dense = self.words("lfdensify", self.field, "-o", out.with_suffix(".lfs"), "--depths", 0.2, 10,
                            "--spacing", 0.25, "--force", "--most", 60)
         packages = self.preprocess(self.path, out)
@@ -114,6 +115,7 @@ class TinyCalls:
                 Call("lfpreprocessor", packages, [[*packages, "--overwrite"]]),
                 Call("lfcompressor", store, [[*store, "--resume"], [*store, "--overwrite"]]),
                 Call("lfcompressor, shards", shards, [[*shards, "--resume"], [*shards, "--overwrite"]]),
+                Call("lfcompressor, groups", groups, [[*groups, "--resume"], [*groups, "--overwrite"]]),
                 Call("lfdensify", dense, [[*dense, "--resume"], [*dense, "--overwrite"]]),
                 Call("lfrenderer, collect", film, [[*film, "--resume"]]),
                 Call("lfrenderer, hybrid", hybrid, [[*hybrid, "--resume"]]),
