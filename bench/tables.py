@@ -52,6 +52,7 @@ TABLES = {
                          "--only 'stanford-cards, 384' --runs 1"),
     "reduced_frames": ("codec", "bench/quality/reduced_frames.py {build} {data}", None),
     "codec_speed": ("codec", "bench/codec_speed.py {build} --data {data} --runs 3", "--runs 2"),
+    "group_films": ("codec", "bench/quality/group_films.py {build}/bin {data} --views 10", "--only mosaics --views 4"),
     "group_decoding": ("codec", "bench/group_decoding.py {build}",
                        "--only 'still-life, 3 mm' --size 96x64 --runs 1"),
     "focus_numpy": ("focus", "bench/focus_numpy.py {build} {data}/data/stanford-cards-9x9", "--runs 1 --planes 2"),
