@@ -45,7 +45,8 @@ Result<SampledBytes> SampleBytes(const CompressSource& source, const CodecSettin
   SampledBytes bytes;
   std::optional<Error> unreadable;
   for (const auto& group : coded) {
-    if (!group) return Error{ErrorKind::kInterrupted, "interrupted during the choice of a profile"};
+    if (!group || (!*group && group->error().kind == ErrorKind::kInterrupted))
+      return Error{ErrorKind::kInterrupted, "interrupted during the choice of a profile"};
     LF_RETURN_IF_ERROR(*group);
     bytes.in_groups += (*group)->bytes;
     for (size_t i = 0; i < (*group)->members.size(); ++i) {

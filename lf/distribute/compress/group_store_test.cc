@@ -17,6 +17,7 @@
 #include "lf/distribute/compress/test_drawn_capture.h"
 #include "lf/storage/load/folder_store.h"
 #include "lf/storage/load/packed_store.h"
+#include "lf/storage/packed/packed_store_writer.h"
 #include "lf/storage/packed/reference_table.h"
 
 namespace lf {
@@ -166,6 +167,25 @@ TEST_F(GroupStoreTest, TheThresholdIsFoundForAQuality) {
     ASSERT_TRUE(report) << report.error().message;
     EXPECT_GE(report->error.PsnrDb(), psnr_db);
     EXPECT_LT(report->error.PsnrDb(), psnr_db + 1);
+  }
+}
+
+TEST_F(GroupStoreTest, AnInterruptedChoiceOfAProfileLeavesNothing) {
+  ASSERT_TRUE(SetCodec({.profile = "auto"}, &options_));
+  MakeCapture<uint8_t>(PixelLayout::kRgb);
+  for (const size_t moment : {size_t{0}, size_t{3}, source_.light_field.size()}) {
+    std::atomic<bool> interrupted = false;
+    options_.interrupted = &interrupted;
+    const Result<CompressReport> report = Make([&](const CompressProgress& now) {
+      if (now.phase == CompressPhase::kChoosing && now.done == moment) interrupted = true;
+    });
+    ASSERT_FALSE(report);
+    EXPECT_EQ(report.error().kind, ErrorKind::kInterrupted);
+    if (moment < source_.light_field.size()) {
+      EXPECT_EQ(report.error().message, "interrupted during the choice of a profile");
+      EXPECT_FALSE(PackedStoreWriter::IsUnfinished(store_));
+    }
+    EXPECT_FALSE(std::filesystem::exists(store_));
   }
 }
 
