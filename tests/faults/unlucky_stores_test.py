@@ -5,6 +5,7 @@ changed, signals, partial copies, edited calibrations.
 
 usage: unlucky_stores_test.py LFCOMPRESSOR LFRENDERER LFPREPROCESSOR
 """
+import contextlib
 import json
 import os
 import pathlib
@@ -33,13 +34,24 @@ class UnluckyStoresTest(StoreTest):
         self.compressor, self.renderer, self.preprocessor = lfcompressor_test.PROGRAMS
         self.field = write_field(self.folder / "field", smooth)
 
+    def has_written(self):
+        """Returns True if the unfinished store has LF images. Reads it without locks, which would disturb its
+        writer."""
+        unfinished = self.folder / "a.lfs.unfinished"
+        if not unfinished.exists():
+            return False
+        with contextlib.closing(sqlite3.connect(f"file:{unfinished}?immutable=1", uri=True)) as database:
+            try:
+                return database.execute("select count(*) from codes").fetchone()[0] > 0
+            except sqlite3.Error:
+                return False
+
     def interrupt(self, *arguments, how=signal.SIGINT):
         """Interrupts a call as soon as it has written something. Returns its exit status and its output."""
         process = subprocess.Popen([self.compressor, *map(str, arguments), "--threads", "1"],
                                    stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-        while not (self.folder / "a.lfs.unfinished").exists() and process.poll() is None:
+        while not self.has_written() and process.poll() is None:
             time.sleep(0.005)
-        time.sleep(0.3)
         process.send_signal(how)
         _, errors = process.communicate(timeout=240)
         return process.returncode, errors
