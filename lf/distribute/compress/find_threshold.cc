@@ -140,6 +140,26 @@ class SingleImages : public Sample {
 // Groups of LF images that are predicted.
 class WholeGroups : public Sample {
  public:
+  // kInput: no LF image of the sample can be read.
+  static Result<std::unique_ptr<Sample>> Open(const CompressSource& source,
+                                              const CodecSettings& settings,
+                                              const std::function<bool()>& is_interrupted) {
+    auto groups = std::make_unique<WholeGroups>(source, settings, is_interrupted);
+    size_t unreadable = 0;
+    std::optional<Error> first;
+    for (const size_t group : groups->sample_)
+      for (const GroupMember& member : groups->groups_.Group(group)) {
+        if (is_interrupted()) return Interruption();
+        const PixelRect rect =
+            RectToRecord(source.light_field, member.id, source.rects[member.id.value]);
+        const Result<RecordedImage> image = ReadRecordedImage(source.light_field, member.id, rect);
+        if (image) return std::unique_ptr<Sample>(std::move(groups));
+        ++unreadable;
+        if (!first) first = image.error();
+      }
+    return NoneCanBeRead(unreadable, *first);
+  }
+
   WholeGroups(const CompressSource& source, const CodecSettings& settings,
               const std::function<bool()>& is_interrupted)
       : source_(source),
@@ -183,17 +203,16 @@ Result<double> FindThreshold(const CompressSource& source, const Encoding& encod
     return UsageError(
         "{target_psnr} cannot be used with {profile lossless}, which has no loss: leave one of "
         "them out");
-  LF_ASSIGN_OR_RETURN(const std::unique_ptr<Sample> single,
-                      SingleImages::Read(source, encoding.settings, pool, is_interrupted));
-  std::optional<WholeGroups> groups;
-  if (encoding.in_groups) groups.emplace(source, encoding.settings, is_interrupted);
-  const Sample& sample = groups ? *groups : *single;
+  LF_ASSIGN_OR_RETURN(const std::unique_ptr<Sample> sample,
+                      encoding.in_groups
+                          ? WholeGroups::Open(source, encoding.settings, is_interrupted)
+                          : SingleImages::Read(source, encoding.settings, pool, is_interrupted));
   std::optional<FrameSample> frames;
   if (use != nullptr)
     frames.emplace(*use, source.rects,
-                   [&](double threshold) { return sample.ErrorAt(threshold, pool).Mean(); });
+                   [&](double threshold) { return sample->ErrorAt(threshold, pool).Mean(); });
   const auto psnr_at = [&](double threshold) {
-    if (!frames) return sample.ErrorAt(threshold, pool).PsnrDb();
+    if (!frames) return sample->ErrorAt(threshold, pool).PsnrDb();
     return CodeError{frames->ErrorAt(threshold), 1}.PsnrDb();
   };
   const double best = psnr_at(ThresholdOf(0));

@@ -189,6 +189,28 @@ TEST_F(GroupStoreTest, AnInterruptedChoiceOfAProfileLeavesNothing) {
   }
 }
 
+// The groups of the sample are broken; another one, which is not looked at, is not.
+TEST_F(GroupStoreTest, ASampleThatCannotBeReadGivesNoThreshold) {
+  MakeCapture<uint8_t>(PixelLayout::kRgb);
+  LightField& field = source_.light_field;
+  for (uint32_t i = 0; i < field.size(); ++i)
+    field.cameras[i].gain = ChannelGains(i < 7 ? 1.0f : i < 14 ? 4.0f : 16.0f);
+  source_.whole = IdentityOf(field);
+  const ReferenceGroups groups = GroupsOf(source_);
+  ASSERT_EQ(groups.size(), 3U);
+  const std::vector<size_t> sample = SampleOf(groups, 12);
+  ASSERT_EQ(sample.size(), 2U);
+  for (const size_t group : sample)
+    for (const GroupMember& member : groups.Group(group))
+      std::filesystem::resize_file(field.ImagePath(member.id), 30);
+  options_.target_psnr_db = 42;
+  const Result<CompressReport> report = Make();
+  ASSERT_FALSE(report);
+  EXPECT_EQ(report.error().kind, ErrorKind::kInput);
+  EXPECT_NE(report.error().message.find("LF images that were tried can be read"), std::string::npos)
+      << report.error().message;
+}
+
 TEST_F(GroupStoreTest, AutoChoosesByASample) {
   ASSERT_TRUE(SetCodec({.profile = "auto"}, &options_));
   options_.overwrite = true;

@@ -124,8 +124,8 @@ ReferenceRoom RoomFor(const ReferenceNeed& references, const LightField& light_f
           references.in_groups ? of_groups(kGroupsInUse * threads) : static_cast<size_t>(all)};
 }
 
-// Returns the most bytes of the stored values of all LF images, which are not floats, as no
-// predicted LF image is.
+// Returns the most bytes of the stored values of all LF images: those of predicted LF images have
+// at most 16 bits, because floats are stored as half floats.
 uint64_t MostStoredBytes(const LightField& light_field) {
   const std::vector<Intrinsics>& intrinsics =
       light_field.reduction ? light_field.reduction->recorded_intrinsics : light_field.intrinsics;
