@@ -261,8 +261,7 @@ void Compressor::AddGroups(PackedStoreWriter* writer) {
 
 Result<CodedMember> Compressor::Encode(LfImageId id) const {
   const LightField& light_field = source_.light_field;
-  const PixelRect rect = RectToRecord(light_field, id, source_.rects[id.value]);
-  LF_ASSIGN_OR_RETURN(const RecordedImage image, ReadRecordedImage(light_field, id, rect));
+  LF_ASSIGN_OR_RETURN(const RecordedImage image, ReadToCompress(source_, id));
   CodedMember coded;
   coded.id = id;
   LF_ASSIGN_OR_RETURN(coded.image,

@@ -90,6 +90,11 @@ std::vector<LfImageId> CompressSource::CompressedIds() const {
   return ids;
 }
 
+Result<RecordedImage> ReadToCompress(const CompressSource& source, LfImageId id) {
+  const PixelRect rect = RectToRecord(source.light_field, id, source.rects[id.value]);
+  return ReadRecordedImage(source.light_field, id, rect);
+}
+
 Result<CompressSource> SourceOfAll(LightField light_field) {
   std::vector<PixelRect> rects;
   for (size_t i = 0; i < light_field.size(); ++i) rects.push_back(WholeImage(light_field, i));

@@ -13,6 +13,7 @@
 #include "lf/light_field/model/light_field.h"
 #include "lf/light_field/model/light_field_identity.h"
 #include "lf/render/package/package.h"
+#include "lf/storage/load/recorded_image.h"
 #include "lf/storage/packed/packed_store_file.h"
 
 namespace lf {
@@ -36,6 +37,10 @@ struct CompressSource {
   // Returns the ids of the LF images that are not left out, ascending; there is at least one.
   std::vector<LfImageId> CompressedIds() const;
 };
+
+// Reads the pixels of an LF image that are compressed: those of its rectangle, and what a mosaic
+// needs around them. Errors as ReadRecordedImage().
+Result<RecordedImage> ReadToCompress(const CompressSource& source, LfImageId id);
 
 // Returns all LF images of the light field, with all their pixels; of a packed store, those that it
 // has. kUsage: the light field is reduced, or a packed store that is densified, has parts of LF

@@ -99,8 +99,7 @@ class SingleImages : public Sample {
     pool.ForEach(sample->images_.size(), [&](size_t i) {
       if (is_interrupted()) return;
       const LfImageId id = ids[i * ids.size() / sample->images_.size()];
-      const PixelRect rect = RectToRecord(source.light_field, id, source.rects[id.value]);
-      sample->images_[i] = ReadRecordedImage(source.light_field, id, rect);
+      sample->images_[i] = ReadToCompress(source, id);
     });
     if (is_interrupted()) return Interruption();
     if (std::none_of(sample->images_.begin(), sample->images_.end(),
@@ -150,9 +149,7 @@ class WholeGroups : public Sample {
     for (const size_t group : groups->sample_)
       for (const GroupMember& member : groups->groups_.Group(group)) {
         if (is_interrupted()) return Interruption();
-        const PixelRect rect =
-            RectToRecord(source.light_field, member.id, source.rects[member.id.value]);
-        const Result<RecordedImage> image = ReadRecordedImage(source.light_field, member.id, rect);
+        const Result<RecordedImage> image = ReadToCompress(source, member.id);
         if (image) return std::unique_ptr<Sample>(std::move(groups));
         ++unreadable;
         if (!first) first = image.error();

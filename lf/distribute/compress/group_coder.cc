@@ -238,9 +238,7 @@ Result<std::optional<GroupCoder::Candidate>> GroupCoder::BestOf(const RecordedIm
 
 // Reads and encodes an image of the group.
 Result<void> GroupCoder::Add(const GroupMember& member, Work* work) const {
-  const PixelRect rect =
-      RectToRecord(source_.light_field, member.id, source_.rects[member.id.value]);
-  const Result<RecordedImage> read = ReadRecordedImage(source_.light_field, member.id, rect);
+  const Result<RecordedImage> read = ReadToCompress(source_, member.id);
   if (!read && read.error().kind == ErrorKind::kInput) {
     work->group.unreadable.push_back({member.id, read.error()});
     return {};

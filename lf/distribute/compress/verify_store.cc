@@ -115,9 +115,7 @@ class Verifier {
   // Encodes an LF image as it must be in the store. kInput: it cannot be read.
   Result<CodedImage> Encode(LfImageId id) const {
     if (options_.copied) return options_.copied->Of(id);
-    const PixelRect rect = RectToRecord(source_.light_field, id, source_.rects[id.value]);
-    LF_ASSIGN_OR_RETURN(const RecordedImage image,
-                        ReadRecordedImage(source_.light_field, id, rect));
+    LF_ASSIGN_OR_RETURN(const RecordedImage image, ReadToCompress(source_, id));
     return coder_.CodeOrFile(source_.light_field, id, image, options_.factors.Of(id.value));
   }
 
