@@ -74,7 +74,7 @@ class BusySignalsTest(unittest.TestCase):
             "lfimport": [field, "--check", "pixels"],
             "lfexample": [field, "-o", out / "path.yaml"],
             "lfcammvminfo": [film],
-            "lfpath": [film, "-o", out / "path.yaml"],
+            "lfpath": [film, "-o", out / "path.json"],
             "lfpreprocessor": [self.small, film, "-o", out],
             "lfcompressor": [field, "-o", out / "store.lfs"],
             "lfdensify": [field, "-o", out / "store.lfs", "--depths", 2, 4, "--force"],
@@ -103,6 +103,8 @@ class BusySignalsTest(unittest.TestCase):
         clock = Clock(process.pid)
         while clock.look() < moment_s and process.poll() is None:
             time.sleep(0.01)
+        if process.poll() is not None:
+            self.fail(f"{name} ended before the signal: its call must take longer: {process.communicate()[1][-400:]}")
         before_s, begin_s = clock.look(), time.monotonic()
         process.send_signal(signal.SIGTERM)
         while process.poll() is None and clock.look() - before_s <= MOST_CPU_S:
