@@ -29,6 +29,7 @@ import numpy as np
 from PIL import Image
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent))
+import mosaic_sensor
 import record as results
 
 ALLOWED_LOSS_DB = 0.3
@@ -38,6 +39,9 @@ BICUBIC = "--mode collect --estimator bilinear --filter bicubic --lens-weights a
 # Columns of the table of pixels that show areas; lens weights are auto in all of them.
 OF_AREAS = {"nearest": "--estimator nearest", "bilinear": "--filter bilinear", "bicubic": "--filter bicubic",
             "default": ""}
+MOSAICS_OF_AREAS = {"Bayer, nearest": "--mode collect --estimator nearest --lens-weights auto", "Bayer, default": ""}
+# Methods for mosaics are chosen on these cases; the others are for reporting (doc/quality.md).
+CHOOSING = {"planar_d4_f50", "planar_d8_f20_penta", "band_d4_f40", "planar_d8_f45_vtilt", "planar_d8_f20_half"}
 
 
 def camera_axes(case):
@@ -93,18 +97,20 @@ def write_field(folder, field, frames):
     return folder / "transforms.json"
 
 
+def purpose(case_name):
+    """Returns what the row of a case is for."""
+    return mosaic_sensor.CHOOSING if case_name in CHOOSING else mosaic_sensor.REPORTING
+
+
 def mosaic(calibration, folder):
-    """Writes the light field as an RGGB mosaic sensor would have recorded it."""
+    """Writes the light field as an RGGB mosaic sensor would have recorded it, with the bits of its LF images."""
     folder.mkdir(parents=True)
     field = json.loads(calibration.read_text())
-    field.update(lf_bayer="RGGB", lf_transfer="sRGB")
+    field.update(lf_bayer="RGGB", lf_transfer=field.get("lf_transfer", "sRGB"))
     for frame in field["frames"]:
-        rgb = np.asarray(Image.open(calibration.parent / frame["file_path"]).convert("RGB"))
-        raw = rgb[..., 1].copy()
-        raw[0::2, 0::2] = rgb[0::2, 0::2, 0]
-        raw[1::2, 1::2] = rgb[1::2, 1::2, 2]
+        rgb = cv2.imread(str(calibration.parent / frame["file_path"]), cv2.IMREAD_UNCHANGED)[..., 2::-1]
         name = pathlib.Path(frame["file_path"]).name
-        Image.fromarray(raw).save(folder / name)
+        cv2.imwrite(str(folder / name), mosaic_sensor.rggb(rgb))
         frame["file_path"] = name
     (folder / "transforms.json").write_text(json.dumps(field))
     return folder / "transforms.json"
@@ -142,14 +148,18 @@ def encoded(light):
     return np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
 
 
+def at_half_size(field):
+    """Returns a calibration of LF images of half the size."""
+    halve = lambda owner: owner | {key: owner[key] // 2 if key in "wh" else owner[key] / 2
+                                   for key in {"w", "h", "fl_x", "fl_y", "cx", "cy"} & owner.keys()}
+    return halve(field) | {"frames": [halve(frame) for frame in field["frames"]]}
+
+
 def of_areas(calibration, folder):
     """Writes the light field at half its size, with pixels that show the means of areas."""
     folder.mkdir(parents=True)
-    field = json.loads(calibration.read_text())
+    field = at_half_size(json.loads(calibration.read_text()))
     field["lf_transfer"] = "linear"
-    for owner in (field, *field["frames"]):
-        for key in {"w", "h", "fl_x", "fl_y", "cx", "cy"} & owner.keys():
-            owner[key] = owner[key] // 2 if key in "wh" else owner[key] / 2
     light_of = linear(np.arange(256) / 255)
     for frame in field["frames"]:
         stored = cv2.imread(str(calibration.parent / frame["file_path"]))
@@ -187,32 +197,38 @@ def true_picture_of_areas(truth, case):
 
 def measure_areas(renderer, truth, folder):
     """Returns one row per case: {column: dB}, and the number of contributing LF images."""
-    fields, rows = {}, []
+    fields, mosaics, rows = {}, {}, []
     for case in json.loads((truth / "cases.json").read_text())["cases"]:
         if not case["aperture_diameter_m"]:
             continue
         calibration = truth / case["light_field"]
         if calibration not in fields:
-            fields[calibration] = of_areas(calibration, folder / ("areas_" + calibration.parent.name))
+            name = calibration.parent.name
+            fields[calibration] = of_areas(calibration, folder / f"areas_{name}")
+            mosaics[calibration] = mosaic(fields[calibration], folder / f"bayer_areas_{name}")
         picture = true_picture_of_areas(truth, case)
         work = folder / case["name"]
         work.mkdir(parents=True, exist_ok=True)
         path = work / "path.yaml"
         path.write_text(path_yaml(case | {"h": picture.shape[0], "w": picture.shape[1]}))
         row = {"case": case["name"]}
-        for column, options in OF_AREAS.items():
-            frame, row["lf_images"] = render(renderer, fields[calibration], path, work / column, options)
-            rendered = cv2.imread(str(frame), cv2.IMREAD_UNCHANGED)[..., 2::-1]
-            row[column] = -10 * math.log10(np.mean((rendered - picture) ** 2))
+        for of_column, columns in ((fields, OF_AREAS), (mosaics, MOSAICS_OF_AREAS)):
+            for column, options in columns.items():
+                frame, images = render(renderer, of_column[calibration], path, work / column, options)
+                if of_column is fields:
+                    row["lf_images"] = images
+                rendered = cv2.imread(str(frame), cv2.IMREAD_UNCHANGED)[..., 2::-1]
+                row[column] = -10 * math.log10(np.mean((rendered - picture) ** 2))
         rows.append(row)
         print(row, file=sys.stderr, flush=True)
     return rows
 
 
 def table_of_areas(rows):
-    lines = ["| case | LF images | nearest | bilinear | bicubic | default |", "| --- " * 6 + "|"]
-    return lines + [f"| {row['case']} | {row['lf_images']} | " +
-                    " | ".join(f"{row[column]:.2f}" for column in OF_AREAS) + " |" for row in rows]
+    columns = (*OF_AREAS, *MOSAICS_OF_AREAS)
+    lines = ["| case | for | LF images | " + " | ".join(columns) + " |", "| --- " * (len(columns) + 3) + "|"]
+    return lines + [f"| {row['case']} | {purpose(row['case'])} | {row['lf_images']} | " +
+                    " | ".join(f"{row[column]:.2f}" for column in columns) + " |" for row in rows]
 
 
 COLUMNS = ("nearest", "scatter", "bilinear", "gather", "bicubic", "default", "bayer_nearest", "bayer_default")
@@ -245,9 +261,9 @@ def measure(renderer, truth, folder):
 
 
 def table(rows):
-    lines = ["| case | LF images | nearest | reference | bilinear | reference | bicubic | default | "
-             "Bayer, nearest | Bayer, default |", "| --- " * 10 + "|"]
-    return lines + [f"| {row['case']} | {row['lf_images']} | " +
+    lines = ["| case | for | LF images | nearest | reference | bilinear | reference | bicubic | default | "
+             "Bayer, nearest | Bayer, default |", "| --- " * 11 + "|"]
+    return lines + [f"| {row['case']} | {purpose(row['case'])} | {row['lf_images']} | " +
                     " | ".join(f"{row[column]:.2f}" for column in COLUMNS) +
                     " |" for row in rows]
 
