@@ -72,7 +72,7 @@ TABLES = {
     "lens_weights-captures": ("lens-integral", WEIGHTS + "captures", "--only band_d3"),
     "lens_weights-lenses": ("lens-integral", WEIGHTS + "lenses", "--only nothing"),
     "lens_weights-magnifications": ("lens-integral", WEIGHTS + "magnifications", "--only nothing"),
-    "lens_weights-mosaics": ("quality", WEIGHTS + "mosaics", "--only nothing"),
+    "mosaics": ("quality", "bench/quality/mosaics.py {build}/bin/lfrenderer", "--only nothing"),
     **{f"densify_quality-{group}": ("densify",
                                     "bench/quality/densify_quality.py {build}/bin {data} --only " + group, None)
        for group in ("planar", "band", "scenes", "around", "turntables", "orbits", "left-out", "trust", "shop",

@@ -4,7 +4,7 @@
 kind of lens weights, and prints the tables of doc/lens-integral.md.
 
 usage: lens_weights.py LFRENDERER GROUNDTRUTH [--name NAME] [--write doc/lens-integral.md] [--only SUBSTRING]
-                       [--tables captures,lenses,magnifications,mosaics]
+                       [--tables captures,lenses,magnifications]
        lens_weights.py --again JSON [--write doc/lens-integral.md]
 
 GROUNDTRUTH     as for quality.py
@@ -12,7 +12,6 @@ captures        thinned captures of the ground truth cases; LF images are droppe
                 always the same
 lenses          lenses as small as pinholes, in two scenes of lfsynth (beside LFRENDERER)
 magnifications  the same scenes with frames finer and coarser than their LF images
-mosaics         mosaics instead of RGB images (doc/quality.md); made only if --tables names them
 
 Each table has its own record. If several tables are made, their records are called NAME-captures and so on.
 """
@@ -193,12 +192,14 @@ class SyntheticScenes:
     def run(self, *arguments):
         results.call([self.lfsynth, *arguments, "-q"])
 
-    def calibration(self, scene, is_mosaic=False):
-        folder = self.folder / (scene + ("-mosaic" if is_mosaic else ""))
+    def photograph(self, scene, folder, *options):
+        self.run(scene, "-o", folder, "--count", 225, "--jitter", 0.4, "--spacing", SYNTHETIC_SPACING, "--size",
+                 "x".join(map(str, SYNTHETIC_SIZE)), *options)
+
+    def calibration(self, scene):
+        folder = self.folder / scene
         if not (folder / "transforms.json").exists():
-            self.run(scene, "-o", folder, "--count", 225, "--jitter", 0.4, "--spacing",
-                     SYNTHETIC_SPACING, "--size", "x".join(map(str, SYNTHETIC_SIZE)),
-                     *(["--bayer"] if is_mosaic else []))
+            self.photograph(scene, folder)
         return folder / "transforms.json"
 
     def truth(self, scene, diameter, scale=1, focus=0.8, behind=0):
@@ -246,23 +247,6 @@ def table_of_magnifications(renderer, scenes, only):
     return table
 
 
-def table_of_mosaics(renderer, scenes, only):
-    ways = {"nearest": f"{COLLECT} nearest --lens-weights auto",
-            "demosaicked": f"{COLLECT} bilinear --filter bicubic --lens-weights auto", "default": ""}
-    table = Table("scene", "diameter, in camera distances", "elements per LF pixel", "RGB", *ways)
-    for scene in (*SYNTHETIC_SCENES, "lights"):
-        if only not in scene:
-            continue
-        for distances, scale in ((1, 0.8), (3, 0.8), (8, 0.4), (8, 0.8), (8, 1.6)):
-            path, truth = scenes.truth(scene, distances * SYNTHETIC_SPACING, scale)
-            rgb = decibels(renderer, truth, scenes.calibration(scene), path, "")
-            mosaics = scenes.calibration(scene, is_mosaic=True)
-            table.add(scene, distances, f"{scale / 0.8:g}", text(rgb),
-                      *(text(decibels(renderer, truth, mosaics, path, way))
-                        for way in ways.values()))
-    return table
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -283,8 +267,7 @@ def main():
         scenes = SyntheticScenes(a.renderer, a.scenes or pathlib.Path(temporary))
         tables = {"captures": lambda: table_of_captures(a.renderer, a.groundtruth, a.only),
                   "lenses": lambda: table_of_lenses(a.renderer, scenes, a.only),
-                  "magnifications": lambda: table_of_magnifications(a.renderer, scenes, a.only),
-                  "mosaics": lambda: table_of_mosaics(a.renderer, scenes, a.only)}
+                  "magnifications": lambda: table_of_magnifications(a.renderer, scenes, a.only)}
         names = a.tables.split(",")
         for name in names:
             record = results.context()

@@ -29,6 +29,11 @@ class Case:
             cells, purpose, path, truth, mosaics, rgb)
 
 
+def percent(noise):
+    """Returns the noise as tables show it."""
+    return f"{100 * noise:g} %" if noise else "none"
+
+
 def rggb(picture):
     """Returns the mosaic of a picture [height][width][3]."""
     mosaic = picture[..., 1].copy()
