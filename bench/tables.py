@@ -73,6 +73,7 @@ TABLES = {
     "lens_weights-lenses": ("lens-integral", WEIGHTS + "lenses", "--only nothing"),
     "lens_weights-magnifications": ("lens-integral", WEIGHTS + "magnifications", "--only nothing"),
     "mosaics": ("quality", "bench/quality/mosaics.py {build}/bin/lfrenderer", "--only nothing"),
+    "photographs": ("quality", "bench/quality/photographs.py {build}/bin/lfrenderer {data}/data", "--only nothing"),
     **{f"densify_quality-{group}": ("densify",
                                     "bench/quality/densify_quality.py {build}/bin {data} --only " + group, None)
        for group in ("planar", "band", "scenes", "around", "turntables", "orbits", "left-out", "trust", "shop",
