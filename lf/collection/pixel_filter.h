@@ -38,6 +38,7 @@ const char* NameOf(PixelFilter filter);
 struct PixelReading {
   PixelFilter filter = PixelFilter::kAuto;
   std::optional<PixelFootprint> footprint = std::nullopt;  // used by prefilters; unset: kArea
+  int correction = 0;                                      // Prefilter::correction, used by kMosaic
 
   PixelReading() = default;
   PixelReading(PixelFilter the_filter)

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "lf/collection/prefilter/mosaic_correction.h"
 #include "lf/collection/prefilter/prefilter_rows.h"
 #include "lf/core/check.h"
 
@@ -15,8 +17,9 @@ namespace {
 constexpr size_t kLanes = LfPixels::kRgbLanes;
 
 // Does the first step of FilterPixels() for row `y` of pixels.
-void FilterAlong(const Prefilter& filter, const LfPixels& pixels, int y, int count, int32_t* out) {
-  const uint16_t* const row = pixels.radiance.row(y);
+//   row  the row, corrected if the filter corrects
+void FilterAlong(const Prefilter& filter, const LfPixels& pixels, const uint16_t* row, int y,
+                 int count, int32_t* out) {
   const int width = pixels.radiance.width();
   if (!filter.by_shares || pixels.recorded == BayerPattern::kNone)
     return FilterAlongRow(filter, row, width, pixels.any_masked, count, out);
@@ -53,6 +56,8 @@ class RowFilter {
         rows_(ring_) {
     filtered_.resize((ring_ + 1) * row_values_);
     std::fill(filtered_.end() - static_cast<ptrdiff_t>(row_values_), filtered_.end(), 0);
+    if (filter.correction > 0 && pixels.recorded != BayerPattern::kNone)
+      corrector_.emplace(filter.correction, pixels);
   }
   ~RowFilter() { Spare() = std::move(filtered_); }
   RowFilter(const RowFilter&) = delete;
@@ -61,11 +66,15 @@ class RowFilter {
   // Writes the knots that need only the first `complete_rows` rows of pixels.
   void Advance(int complete_rows) {
     const int height = pixels_.radiance.height();
+    // The correction of a row needs rows behind it.
+    if (corrector_ && complete_rows < height) complete_rows -= MosaicCorrection::kReach_px;
     while (y_ < to_.height()) {
       const int row_count = std::min(kKnotRowsAtOnce, to_.height() - y_);
       const int end = y_ + row_count + after_;
       for (; next_ < std::min(complete_rows, end); ++next_)
-        FilterAlong(filter_, pixels_, next_, to_.width(), Row(next_));
+        FilterAlong(filter_, pixels_,
+                    corrector_ ? corrector_->Row(next_) : pixels_.radiance.row(next_), next_,
+                    to_.width(), Row(next_));
       if (complete_rows < std::min(height, end)) return;
       for (int k = y_ - before_; k < end; ++k)
         rows_[static_cast<size_t>(k - y_ + before_)] = Row(k);
@@ -99,6 +108,7 @@ class RowFilter {
   // A ring of the filtered rows that are still needed, and a row of zeros.
   std::vector<int32_t> filtered_;
   std::vector<const int32_t*> rows_;
+  std::optional<MosaicCorrector> corrector_;
   int next_ = 0;  // the next row of pixels to be filtered along the row
   int y_ = 0;     // the next row of knots
 };

@@ -42,8 +42,11 @@ struct Prefilter {
   std::array<int16_t, kMostWeights> weights = {kOne};
   // True: pixels of a mosaic (LfPixels::recorded) are first multiplied by ShareFactor().
   bool by_shares = false;
+  // Strength of the correction that pixels made from a mosaic (LfPixels::recorded) get before they
+  // are filtered: 0 (none) to kStrongestCorrection (mosaic_correction.h).
+  int correction = 0;
 
-  bool changes_nothing() const { return !is_even && count == 1; }
+  bool changes_nothing() const { return !is_even && count == 1 && correction == 0; }
   friend bool operator==(const Prefilter&, const Prefilter&) = default;
   friend auto operator<=>(const Prefilter&, const Prefilter&) = default;
 };

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 
+#include "lf/collection/prefilter/mosaic_correction.h"
 #include "lf/collection/prefilter/prefilter.h"
 #include "lf/collection/prefilter/prefilter_rows.h"
 #include "lf/core/check.h"
@@ -31,11 +33,32 @@ int64_t Rounded(int64_t value, int bits) { return (value + (int64_t{1} << (bits 
 
 }  // namespace
 
+uint16_t CorrectedReference(int strength, const LfPixels& pixels, int column, int row,
+                            int channel) {
+  const MosaicCorrection::Weights weights = CorrectionWeights(
+      strength, pixels.recorded, pixels.rect.x_begin + column, pixels.rect.y_begin + row, channel);
+  const int64_t value = pixels.radiance.at(column, row, channel);
+  int64_t sum = 0;
+  for (int y = row - MosaicCorrection::kReach_px; y <= row + MosaicCorrection::kReach_px; ++y)
+    for (int x = column - MosaicCorrection::kReach_px; x <= column + MosaicCorrection::kReach_px;
+         ++x) {
+      if (x < 0 || x >= pixels.rect.width() || y < 0 || y >= pixels.rect.height()) continue;
+      if (pixels.IsMasked(x, y)) continue;
+      for (size_t k = 0; k < weights.size(); ++k)
+        if (std::abs(x - column) == MosaicCorrection::kGroups[k][0] &&
+            std::abs(y - row) == MosaicCorrection::kGroups[k][1])
+          sum += weights[k] * (int64_t{pixels.radiance.at(x, y, channel)} - value);
+    }
+  return static_cast<uint16_t>(
+      std::clamp<int64_t>(value + Rounded(sum, MosaicCorrection::kBits), 0, 65535));
+}
+
 void FilterPixelsReference(const Prefilter& filter, const LfPixels& pixels, LfPixels* out) {
   LF_CHECK(pixels.bayer == BayerPattern::kNone && out != &pixels);
   *out = LfPixels(KnotsOf(filter, pixels.rect), BayerPattern::kNone);
   out->recorded = pixels.recorded;
   out->any_masked = pixels.any_masked;
+  const bool corrects = filter.correction > 0 && pixels.recorded != BayerPattern::kNone;
   const auto there = [&](int x, int y) {
     return x >= 0 && x < pixels.rect.width() && y >= 0 && y < pixels.rect.height() &&
            !pixels.IsMasked(x, y);
@@ -44,7 +67,9 @@ void FilterPixelsReference(const Prefilter& filter, const LfPixels& pixels, LfPi
     return there(x, y) && (!filter.is_even || there(x + 1, y));
   };
   const auto weighed = [&](int x, int y, int c) -> int64_t {
-    const int64_t v = pixels.radiance.at(x, y, c);
+    const int64_t v = corrects && there(x, y)
+                          ? CorrectedReference(filter.correction, pixels, x, y, c)
+                          : pixels.radiance.at(x, y, c);
     if (!filter.by_shares) return v;
     return Rounded(
         v * ShareFactor(pixels.recorded, pixels.rect.x_begin + x, pixels.rect.y_begin + y, c), 8);
