@@ -29,7 +29,9 @@ GatherSampling SamplingOf(const PinholeCamera& lf_camera, const RenderCamera& re
   sampling.filter = FilterOf(reading.filter, RadianceEncoding(), false);
   const PixelFootprint footprint = reading.footprint.value_or(PixelFootprint::kArea);
   const bool may_lack_rays = MayLackRays(lf_camera.intrinsics);
-  const bool is_mosaic = sampling.filter == PixelFilter::kMosaic;
+  const bool corrects = sampling.filter == PixelFilter::kMosaic;
+  if (corrects) sampling.filter = PixelFilter::kPrefiltered;
+  const bool is_mosaic = false;
   const bool are_finer = width_px > kFinerAtMost;
   const bool by_shares = is_mosaic && width_px >= kMosaicByShares;
   const bool prefilters = sampling.filter == PixelFilter::kPrefiltered || by_shares ||
@@ -41,6 +43,7 @@ GatherSampling SamplingOf(const PinholeCamera& lf_camera, const RenderCamera& re
     sampling.prefilter = sampling.is_cubic ? MeanOfMosaic(width_px, footprint)
                          : by_shares       ? PrefilterOfMosaic(width_px, footprint)
                                            : PrefilterFor(width_px, footprint);
+    if (corrects) sampling.prefilter.correction = reading.correction;
     return sampling;
   }
   if (sampling.filter == PixelFilter::kPrefiltered) sampling.filter = PixelFilter::kBilinear;

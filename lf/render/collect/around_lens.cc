@@ -54,10 +54,12 @@ double CameraDistanceAround(const ImageIndex& index, const RenderCamera& frame) 
   return CameraDistance(frame, centres_world);
 }
 
-bool IsSeenBy(const RayThrough& lf_camera, const Vec3& point_world) {
+std::optional<Vec2> SeenAt(const RayThrough& lf_camera, const Vec3& point_world) {
   const std::optional<Vec2> p = lf_camera.RecordedAt(lf_camera.DirectionWorld(point_world));
   const Intrinsics& k = lf_camera.intrinsics();
-  return p && p->x() >= 0 && p->x() <= k.width_px && p->y() >= 0 && p->y() <= k.height_px;
+  const bool is_inside =
+      p && p->x() >= 0 && p->x() <= k.width_px && p->y() >= 0 && p->y() <= k.height_px;
+  return is_inside ? p : std::nullopt;
 }
 
 }  // namespace lf

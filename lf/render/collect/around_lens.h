@@ -3,6 +3,7 @@
 // rays in the lens plane.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "lf/camera/ray_through.h"
@@ -27,8 +28,11 @@ std::vector<LfImageId> CamerasAroundLens(const ImageIndex& index, const RenderCa
 // selection/lens_weights/frame_weights.h); 0 if there is no such LF camera.
 double CameraDistanceAround(const ImageIndex& index, const RenderCamera& frame);
 
-// Returns true if the point lies within the borders of the LF camera's image. Does not test whether
-// something hides the point.
-bool IsSeenBy(const RayThrough& lf_camera, const Vec3& point_world);
+// Returns the position, in pixels, at which an LF camera's image shows a point; none if it lies
+// beyond the borders of the image. Does not test whether something hides the point.
+std::optional<Vec2> SeenAt(const RayThrough& lf_camera, const Vec3& point_world);
+inline bool IsSeenBy(const RayThrough& lf_camera, const Vec3& point_world) {
+  return SeenAt(lf_camera, point_world).has_value();
+}
 
 }  // namespace lf

@@ -144,9 +144,12 @@ PixelRect BatchCollector::RectOf(const BatchImage& image, const RenderCamera& fr
 
 BatchCollector::Exposure BatchCollector::ExposureOf(size_t frame, size_t exposure) const {
   const CollectedFrame& of = frames_[frame];
-  if (exposure == 0) return {of.camera, of.weights};
-  if (is_guarded()) return {of.guard->camera, of.guard->weights};
-  return {of.further[exposure - 1].camera, of.further[exposure - 1].weights};
+  PixelReading reading = reading_;
+  reading.correction = of.correction;
+  if (exposure == 0) return {of.camera, of.weights, reading};
+  if (is_guarded()) return {of.guard->camera, of.guard->weights, reading};
+  const CollectedInstant& instant = of.further[exposure - 1];
+  return {instant.camera, instant.weights, reading};
 }
 
 bool BatchCollector::PlainlyMisses(const BatchImage& image, size_t frame) const {
@@ -205,7 +208,8 @@ void BatchCollector::PlanContribution(const BatchImage& image, const Exposure& e
   if (contribution->rect.empty()) return;
   const Intrinsics& plate = frame.pinhole.intrinsics;
   if (reading_.estimator == Estimator::kBilinear)
-    contribution->gather = PlanGather(camera, frame, std::move(contribution->gather), reading_);
+    contribution->gather =
+        PlanGather(camera, frame, std::move(contribution->gather), exposure.reading);
   else
     contribution->scatter = PlanScatter(camera, frame, contribution->rect,
                                         TileSums::GridOf(plate.width_px, plate.height_px),
@@ -407,7 +411,7 @@ uint64_t BatchCollector::CollectByReference(const BatchImage& image, const LfPix
   if (rect.empty() || weights.are_none()) return 0;
   const PinholeCamera lf_camera = light_field_.Camera(image.id);
   return reading_.estimator == Estimator::kBilinear
-             ? GatherReference(lf_camera, pixels, exposure.camera, plate, weights, reading_)
+             ? GatherReference(lf_camera, pixels, exposure.camera, plate, weights, exposure.reading)
              : ScatterReference(lf_camera, pixels, exposure.camera, rect, plate, weights);
 }
 

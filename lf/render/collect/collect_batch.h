@@ -131,6 +131,7 @@ class BatchCollector {
   struct Exposure {
     const RenderCamera& camera;
     const ImageWeights& weights;
+    PixelReading reading;
   };
   // The contribution of one LF image to one exposure of a frame.
   struct Contribution {

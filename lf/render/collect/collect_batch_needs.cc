@@ -22,9 +22,9 @@ size_t BatchCollector::CountTogether(const std::vector<BatchImage>& batch,
     const auto differs = [&](const BatchFrame& frame) {
       if (PlainlyMisses(image, frame.frame)) return false;
       for (size_t e = 0; e < instant_count(); ++e) {
-        const RenderCamera& camera = ExposureOf(frame.frame, e).camera;
+        const Exposure exposure = ExposureOf(frame.frame, e);
         const Prefilter needed =
-            SamplingOf(light_field_.Camera(image.id), camera, reading_).prefilter;
+            SamplingOf(light_field_.Camera(image.id), exposure.camera, exposure.reading).prefilter;
         if (!filter) filter = needed;
         if (needed != *filter) return true;
       }
@@ -67,7 +67,7 @@ std::optional<Prefilter> BatchCollector::OnlyPrefilterOf(LfImageId id,
       const Exposure exposure = ExposureOf(frame, e);
       if (!whole_images_ && overlap.PlainlyMisses(exposure.camera)) continue;
       if (WeightsOf(exposure, id).are_none()) continue;
-      const Prefilter needed = SamplingOf(camera, exposure.camera, reading_).prefilter;
+      const Prefilter needed = SamplingOf(camera, exposure.camera, exposure.reading).prefilter;
       if (needed.changes_nothing() || (only && needed != *only)) return std::nullopt;
       only = needed;
     }

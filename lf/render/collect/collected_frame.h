@@ -64,6 +64,8 @@ struct CollectedFrame {
   // the plate as those of `camera`, and the counts and moments of an LF image are those of its rays
   // at all instants together. All frames must have the same number; none if there is a guard.
   std::vector<CollectedInstant> further = {};
+  // Strength of the correction that mosaics get for this frame (CorrectionFor()); used by kMosaic.
+  int correction = 0;
   // FrameCollector sets the members below.
   FrameProgress progress = {};
   bool is_stopped = false;  // true: the frame takes no more LF images

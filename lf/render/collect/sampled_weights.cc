@@ -24,6 +24,12 @@ SampledWeights::SampledWeights(std::span<const FrameLens> lenses, std::vector<in
 
 void SampledWeights::Of(LfImageId id, std::span<double> weights) const {
   std::fill(weights.begin(), weights.end(), 0.0);
+  ForEach(id, [&](size_t element, double weight, const Vec2&) { weights[element] += weight; });
+}
+
+void SampledWeights::ForEach(
+    LfImageId id,
+    const std::function<void(size_t element, double weight, const Vec2& position_px)>& body) const {
   for (size_t l = 0; l < lenses_.size(); ++l) {
     const FrameLens& lens = lenses_[l];
     if (!lens.Takes(id)) continue;
@@ -38,8 +44,9 @@ void SampledWeights::Of(LfImageId id, std::span<double> weights) const {
         if (lens.tests_opening() &&
             !openings_[l].Contains(planes_[l].PointOfLine(ray.centre_world(), *point)))
           continue;
-        if (!IsSeenBy(ray, *point)) continue;
-        weights[at] += of_rays.At(x, y);
+        const std::optional<Vec2> position = SeenAt(ray, *point);
+        if (!position) continue;
+        if (const uint32_t weight = of_rays.At(x, y)) body(at, weight, *position);
       }
   }
 }

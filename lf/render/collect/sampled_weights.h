@@ -3,6 +3,8 @@
 // columns and rows of its plate.
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -27,6 +29,13 @@ class SampledWeights {
   // point of the element, or if its ray misses a lens whose opening is tested
   // (FrameLens::tests_opening()). Without lens weights, each lens adds 1. Any thread may call it.
   void Of(LfImageId id, std::span<double> weights) const;
+
+  // Calls body(element, weight, position_px) for each lens and each sampled element in which the LF
+  // image has such a weight above 0. `element` is row * number of columns + column, and position_px
+  // where the LF image shows the focus point of the element.
+  void ForEach(LfImageId id,
+               const std::function<void(size_t element, double weight, const Vec2& position_px)>&
+                   body) const;
 
  private:
   const std::span<const FrameLens> lenses_;

@@ -9,6 +9,7 @@
 #include "lf/core/byte_text.h"
 #include "lf/core/log.h"
 #include "lf/render/collect/around_lens.h"
+#include "lf/render/collect/mosaic_share.h"
 #include "lf/render/hybrid/frame_sampling.h"
 #include "lf/render/needs/frame_needs.h"
 
@@ -49,6 +50,7 @@ Result<void> FilmRenderer::Begin(const RunState* state, std::span<const FrameId>
       frames_[f].ranks = RanksOfFirst(*film_.max_image_count, counted_index(),
                                       TakingInstants(frames_[f]), select_);
     });
+  ChooseCorrections();
   if (film_.Rebins()) LF_RETURN_IF_ERROR(PrepareRebinning(state));
   if (film_.HasPlates()) LF_RETURN_IF_ERROR(PreparePlates(state));
   if (rebinned_ && film_.HasStopRule()) ForgetRaysAhead();
@@ -85,6 +87,28 @@ Result<void> FilmRenderer::FindLenses() {
                              setup_.pool(), package.CameraDistance(frame.id));
   }
   return {};
+}
+
+// Chooses how strongly mosaics are corrected, from all LF images that a frame may take: neither a
+// shard nor an earlier run changes the choice.
+void FilmRenderer::ChooseCorrections() {
+  if (!film_.HasPlates() || film_.reading.estimator != Estimator::kBilinear ||
+      film_.reading.filter != PixelFilter::kMosaic)
+    return;
+  std::vector<std::vector<LfImageId>> images(frames_.size());
+  for (size_t f = 0; f < frames_.size() && !setup_.work().IsStopped(); ++f)
+    for (const SelectedImage& image :
+         SelectImages(counted_index(), TakingInstants(frames_[f]), select_, setup_.pool()))
+      images[f].push_back(image.id);
+  setup_.pool().ForEach(frames_.size(), [&](size_t f) {
+    if (setup_.work().IsStopped()) return;
+    const double share = MosaicShareOf(frames_[f].lenses, images[f]);
+    frames_[f].correction = CorrectionFor(share);
+    LogInfo(
+        "frame {}: mosaics are corrected with strength {}, because {:.2g} of a random error is "
+        "left in the mean of {} LF images",
+        frames_[f].id.value, frames_[f].correction, share, images[f].size());
+  });
 }
 
 // Returns the description of a frame by which selection finds the LF images whose rays have a
@@ -140,6 +164,7 @@ std::vector<CollectedFrame> FilmRenderer::FramesOfCollector() {
     collected.push_back({first.camera(), &frame.plate, frame.ranks, WeightsIn(first)});
     for (const FrameLens& lens : std::span(frame.lenses).subspan(1))
       collected.back().further.push_back({lens.camera(), WeightsIn(lens)});
+    collected.back().correction = frame.correction;
     if (setup_.is_guarded()) collected.back().guard = GuardOf(frame);
     if (film_.MeasuresNoise()) collected.back().moments = &frame.moments;
   }

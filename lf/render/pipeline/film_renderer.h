@@ -147,11 +147,13 @@ class FilmRenderer final : public FrameSource {
     bool is_stopped = false;  // true: stopped by its rule, with the LF images before next_decision
     bool has_noise = false;   // true if the moments include all LF images in the plate
     bool is_early = false;  // true: to be finished with the rays of the earlier run, as EndsEarly()
+    int correction = 0;     // CollectedFrame::correction
     uint32_t saved_ranks = 0;  // FrameProgress::ranks_done of the plate in the state on the disk
     std::unique_ptr<ReachableElements> reachable;
   };
 
   Result<void> FindLenses();
+  void ChooseCorrections();
   TakingFrame Taking(const Frame& frame, const FrameLens& lens) const;
   std::vector<TakingFrame> TakingInstants(const Frame& frame) const;
   ImageWeights WeightsIn(const FrameLens& lens) const;
