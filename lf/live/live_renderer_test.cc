@@ -64,7 +64,9 @@ class MosaicStore : public NoiseStore {
     for (int y = 0; y < testing::kHeight; ++y)
       for (int x = 0; x < testing::kWidth; ++x)
         mosaic.radiance.at(x, y) = noise.radiance.at(x, y, BayerChannel(mosaic.bayer, x, y));
-    Demosaic(mosaic, testing::kWidth, testing::kHeight, {2, 1, 1.5}, rect, pixels);
+    RadianceEncoding encoding;
+    encoding.white_balance = {2, 1, 1.5};
+    Demosaic(mosaic, testing::kWidth, testing::kHeight, encoding, rect, pixels);
     return {};
   }
 };

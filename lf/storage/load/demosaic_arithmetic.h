@@ -1,35 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fixed-point arithmetic that both implementations of demosaicing share. Internal to this folder.
+// The constants of demosaic.h, and what both implementations share. Internal to this folder.
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstdint>
+#include <cstddef>
 
 #include "lf/core/check.h"
-#include "lf/core/geometry.h"
+#include "lf/light_field/model/radiance.h"
 
 namespace lf {
 
-// A colour is computed as a sum in units of 1/4096: weights of pixels are multiples of 1/16, ratios
-// of white balance factors are multiples of 1/256.
-inline constexpr int kWeightBits = 4;
-inline constexpr int kRatioBits = 8;
-// Largest ratio of white balance factors: 8, in units of 1/256. With it no sum reaches 2^31,
-// because the weights of a sum are at most 4096 (mean) and 12 * 2048 (Laplacian): (4096 + 12 *
-// 2048) * 65535 < 2^31.
-inline constexpr int32_t kMaxRatio = 8 << kRatioBits;
+// Radiance that is added before the square root is taken. It is about the radiance below which
+// noise of a sensor no longer grows with the light.
+inline constexpr float kRootOffset = 0.01f;
+// The smallest gradients of green and of other colours, in roots.
+inline constexpr float kLeastGreenGradient = 0.01f, kLeastGradient = 0.02f;
+// Detail gains: the value of both sums of a window in which nothing varies, and the largest gain.
+inline constexpr float kGainPrior = 1e-3f, kMostDetailGain = 2;
+// Weight of the neighbours of step 4 that step 3 interpolated.
+inline constexpr float kInterpolatedShare = 0.5f;
+// The sums of detail gains are taken over sites up to this far away: 5 x 5 sites.
+inline constexpr int kWindowReach = 2;
 
-// Returns the ratio of the white balance factors of two channels, `recorded` / `missing`, in units
-// of 1/256. It is at most kMaxRatio.
-inline int32_t BalanceRatio(const std::array<double, 3>& white_balance, int recorded, int missing) {
-  const double of_recorded = white_balance[static_cast<size_t>(recorded)];
-  const double of_missing = white_balance[static_cast<size_t>(missing)];
-  LF_CHECK(of_recorded > 0 && of_missing > 0);
-  const double ratio = std::floor(of_recorded / of_missing * (1 << kRatioBits) + 0.5);
-  return static_cast<int32_t>(std::min<double>(ratio, kMaxRatio));
-}
+// Converts 16-bit radiances v to balanced radiances and back:
+//   balanced = (v - pedestal) factor[c], v = balanced inverse[c] + pedestal
+// for the channels c.
+struct BalancedLevels {
+  explicit BalancedLevels(const RadianceEncoding& encoding)
+      : pedestal(static_cast<float>(encoding.pedestal)) {
+    for (size_t c = 0; c < 3; ++c) {
+      LF_CHECK(encoding.white_balance[c] > 0);
+      factor[c] = static_cast<float>(encoding.white_balance[c] / encoding.Scale());
+      inverse[c] = static_cast<float>(encoding.Scale() / encoding.white_balance[c]);
+    }
+  }
+
+  float pedestal;
+  std::array<float, 3> factor{}, inverse{};
+};
 
 // Returns `position` mirrored about the outermost pixels into [0, size); `size` is at least 2.
 inline int Mirrored(int position, int size) {

@@ -237,7 +237,7 @@ TEST_F(FolderStoreTest, AMosaicBecomesRgbWhereItIsAskedTo) {
   light_field.encoding.white_balance = {2, 1, 1.5};
   const LfPixels mosaic = Loaded(light_field);
   LfPixels expected;
-  DemosaicReference(mosaic, kWidth, kHeight, light_field.encoding.white_balance, kWhole, &expected);
+  DemosaicReference(mosaic, kWidth, kHeight, light_field.encoding, kWhole, &expected);
   const FolderStore store(light_field, Mosaics::kToRgb);
   LfPixels pixels;
   ASSERT_TRUE(store.Load({0}, kWhole, &pixels));

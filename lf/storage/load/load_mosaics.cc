@@ -20,7 +20,7 @@ Result<void> LoadMosaicsAs(Mosaics mosaics, const LightField& light_field, LfIma
                     light_field.ImagePath(id).string(), k.width_px, k.height_px));
   const PixelRect inside = Intersection(rect, {0, 0, k.width_px, k.height_px});
   LF_RETURN_IF_ERROR(load(MosaicRectOf(inside, k.width_px, k.height_px), mosaic));
-  Demosaic(*mosaic, k.width_px, k.height_px, light_field.encoding.white_balance, inside, pixels);
+  Demosaic(*mosaic, k.width_px, k.height_px, light_field.encoding, inside, pixels);
   return {};
 }
 

@@ -200,9 +200,9 @@ TEST_F(PackedStoreTest, MosaicsHaveTheBitsOfTheFolderAsRecordedAndAsRgb) {
 TEST_F(PackedStoreTest, APartServesWhatItWasRecordedFor) {
   field_.encoding.bayer = BayerPattern::kRggb;
   AddImages<uint8_t>(1);
-  const PixelRect needed = {5, 4, 21, 19};
+  const PixelRect needed = {14, 14, 20, 16};
   const PixelRect recorded = RectToRecord(field_, {0}, needed);
-  EXPECT_EQ(recorded, (PixelRect{3, 2, 23, 21}));
+  EXPECT_EQ(recorded, (PixelRect{1, 1, 33, 29}));
   Pack(recorded);
   ExpectTheBitsOfTheFolder(Mosaics::kToRgb, {needed});
   ExpectTheBitsOfTheFolder(Mosaics::kAsRecorded, {needed, recorded});
@@ -210,11 +210,11 @@ TEST_F(PackedStoreTest, APartServesWhatItWasRecordedFor) {
   EXPECT_TRUE(as_rgb->IsPartial());
   EXPECT_TRUE(as_rgb->Keeps({1}, needed));
   for (const PixelRect& more :
-       {PixelRect{4, 4, 21, 19}, {5, 3, 21, 19}, {5, 4, 22, 19}, {5, 4, 21, 20}})
+       {PixelRect{13, 14, 20, 16}, {14, 13, 20, 16}, {14, 14, 21, 16}, {14, 14, 20, 17}})
     EXPECT_FALSE(as_rgb->Keeps({1}, more)) << more.x_begin << " " << more.y_begin;
-  const std::string fault = ErrorOf(*Opened(), {1}, {2, 4, 21, 19});
-  EXPECT_NE(fault.find("store.lfs/image1.png: its pixels [2, 21) x [4, 19) (x, y) are needed, but "
-                       "only [3, 23) x [2"),
+  const std::string fault = ErrorOf(*Opened(), {1}, {0, 14, 20, 16});
+  EXPECT_NE(fault.find("store.lfs/image1.png: its pixels [0, 20) x [14, 16) (x, y) are needed, but "
+                       "only [1, 33) x [1"),
             std::string::npos)
       << fault;
 }
