@@ -33,8 +33,8 @@ using Picture = std::vector<std::vector<Colours>>;  // [row][column], radiance
 
 constexpr int kImagesOfField = 6;
 constexpr int kBorder_px = 16;
-constexpr double kScale = 20000, kPedestal = 8192;  // of the mosaics
-constexpr double kDark = 0.1;                       // radiance that is added before the division
+constexpr double kPedestal = 8192;  // of the mosaics
+constexpr double kDark = 0.1;       // radiance that is added before the division
 constexpr lf::BayerPattern kPatterns[] = {lf::BayerPattern::kRggb, lf::BayerPattern::kGrbg,
                                           lf::BayerPattern::kGbrg, lf::BayerPattern::kBggr};
 
@@ -110,20 +110,34 @@ Picture Halved(const Picture& whole) {
   return half;
 }
 
+// Returns an encoding of mosaics that clips nothing of the picture.
+lf::RadianceEncoding EncodingOf(const Picture& picture) {
+  lf::RadianceEncoding encoding;
+  encoding.pedestal = kPedestal;
+  encoding.max_radiance = 1;
+  for (const std::vector<Colours>& row : picture)
+    for (const Colours& pixel : row)
+      encoding.max_radiance =
+          std::max(encoding.max_radiance, *std::max_element(pixel.begin(), pixel.end()));
+  return encoding;
+}
+
 Picture Demosaicked(const Picture& truth, lf::BayerPattern pattern) {
   const int width = static_cast<int>(truth[0].size()), height = static_cast<int>(truth.size());
   const lf::PixelRect whole{0, 0, width, height};
+  const lf::RadianceEncoding encoding = EncodingOf(truth);
   lf::LfPixels mosaic(whole, pattern), rgb;
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
       mosaic.radiance.at(x, y) = static_cast<uint16_t>(std::clamp(
-          truth[y][x][lf::BayerChannel(pattern, x, y)] * kScale + kPedestal + 0.5, 0., 65535.));
-  lf::Demosaic(mosaic, width, height, {1, 1, 1}, whole, &rgb);
+          truth[y][x][lf::BayerChannel(pattern, x, y)] * encoding.Scale() + kPedestal + 0.5, 0.,
+          65535.));
+  lf::Demosaic(mosaic, width, height, encoding, whole, &rgb);
   Picture picture(truth.size(), std::vector<Colours>(truth[0].size()));
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
       for (int c = 0; c < 3; ++c)
-        picture[y][x][c] = (rgb.radiance.at(x, y, c) - kPedestal) / kScale;
+        picture[y][x][c] = (rgb.radiance.at(x, y, c) - kPedestal) / encoding.Scale();
   return picture;
 }
 

@@ -27,6 +27,6 @@ inline constexpr int kSampledElements = 48;
 // mean do not become as small as they assume; the factor between the shares was chosen with half of
 // the rows of doc/quality.md.
 int CorrectionFor(double share);
-inline constexpr double kShareFactor = 4;
+inline constexpr double kShareFactor = 3;
 
 }  // namespace lf
