@@ -122,14 +122,10 @@ class Arena {
     const int count = case_.spec.peer_image_count;
     // The limits allow for float positions, which put a few rays into the next element, and for
     // differences of 10^-4 px between the ray model's iteration, arcs and 32-bit ideal positions.
-    // With the mosaic filter, elements have other counts, but the picture is smooth, so that the
-    // means agree.
-    const bool is_mosaic = case_.spec.filter == PixelFilter::kMosaic;
-    const double count_limit = is_mosaic ? 1e9 : 0.002, mean_limit = is_mosaic ? 300 : 60;
-    CheckSame("thesis", MakeThesisLoop(case_), count, ours, count_limit, mean_limit);
-    CheckSame("thesis_native", MakeThesisLoopNative(case_), count, ours, count_limit, mean_limit);
+    CheckSame("thesis", MakeThesisLoop(case_), count, ours, 0.002, 60);
+    CheckSame("thesis_native", MakeThesisLoopNative(case_), count, ours, 0.002, 60);
     // OpenCV interpolates and demosaics although nearest does not, so the counts of OpenCV differ.
-    const bool same_rays = case_.spec.estimator == Estimator::kBilinear && !is_mosaic;
+    const bool same_rays = case_.spec.estimator == Estimator::kBilinear;
     CheckSame("opencv", MakeOpenCv(case_), count, ours, same_rays ? 0.002 : 1e9, 300);
     if (HasCubicPeer(case_.spec))
       CheckSame("opencv_cubic", MakeOpenCv(case_, true), count, ours, 0.002, 300);

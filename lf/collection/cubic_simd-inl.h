@@ -83,64 +83,55 @@ HWY_INLINE void AddCubicRay(const CubicTables& tables, uint32_t right, uint32_t 
 
 using SixteenTag = hn::CappedTag<int32_t, 8>;
 
-// Weights of the four rows of pixels, interleaved for each lane: rows 0 and 1 at index 0, rows 2
-// and 3 at index 1. `low` is for the first of the two pixels in every block of 128 bits, `high` for
-// the second.
-template <class V16>
-struct ColumnWeights {
-  // GCC for ARM inlines the constructors of vectors only into functions with the same HWY_ATTR.
-  HWY_ATTR HWY_INLINE ColumnWeights() {}
-
-  V16 low[2];
-  V16 high[2];
-};
-
 // Mixes columns of four pixels, the topmost of which are at `first`: sums (pixel - kMiddle) *
-// weight and divides the sum by 2^kShift, rounded half up. Writes the mixed columns of the first
-// pixel in each block of 128 bits to `low`, those of the second pixel to `high`.
-template <int kShift, class D16, class V16, class V32>
-HWY_ATTR HWY_INLINE void MixColumns(D16 d16, const ColumnWeights<V16>& weights,
-                                    const uint16_t* first, ptrdiff_t row_values, V32* low,
-                                    V32* high) {
+// weight and divides the sum by 2^kCubicColumnShift, rounded half up. Writes the mixed columns of
+// the first pixel in each block of 128 bits to `low`, those of the second pixel to `high`.
+//   upper, lower  weights of rows 0 and 1, and of rows 2 and 3, interleaved
+template <class D16, class V16, class V32>
+HWY_ATTR HWY_INLINE void MixColumns(D16 d16, V16 upper, V16 lower, const uint16_t* first,
+                                    ptrdiff_t row_values, V32* low, V32* high) {
   const hn::RebindToSigned<D16> di16;
   const hn::Repartition<int32_t, D16> di;
   const auto middle = hn::Set(d16, kMiddle);
-  *low = *high = hn::Set(di, 1 << (kShift - 1));
-  for (int row = 0; row < 4; row += 2) {
-    const auto upper = hn::Xor(hn::LoadU(d16, first + row * row_values), middle);
-    const auto lower = hn::Xor(hn::LoadU(d16, first + (row + 1) * row_values), middle);
-    const auto mix = [&](hn::Vec<D16> both, V16 weight) HWY_ATTR {
+  *low = *high = hn::Set(di, 1 << (kCubicColumnShift - 1));
+  const auto add_rows = [&](int row, V16 weight) HWY_ATTR {
+    const auto above = hn::Xor(hn::LoadU(d16, first + row * row_values), middle);
+    const auto below = hn::Xor(hn::LoadU(d16, first + (row + 1) * row_values), middle);
+    const auto mix = [&](hn::Vec<D16> both) HWY_ATTR {
       auto odd = hn::Zero(di);
       const auto even =
           hn::ReorderWidenMulAccumulate(di, hn::BitCast(di16, both), weight, hn::Zero(di), odd);
       return hn::RearrangeToOddPlusEven(even, odd);
     };
-    *low = hn::Add(*low, mix(hn::InterleaveLower(d16, upper, lower), weights.low[row / 2]));
-    *high = hn::Add(*high, mix(hn::InterleaveUpper(d16, upper, lower), weights.high[row / 2]));
-  }
-  *low = hn::ShiftRight<kShift>(*low);
-  *high = hn::ShiftRight<kShift>(*high);
+    *low = hn::Add(*low, mix(hn::InterleaveLower(d16, above, below)));
+    *high = hn::Add(*high, mix(hn::InterleaveUpper(d16, above, below)));
+  };
+  add_rows(0, upper);
+  add_rows(2, lower);
+  *low = hn::ShiftRight<kCubicColumnShift>(*low);
+  *high = hn::ShiftRight<kCubicColumnShift>(*high);
 }
 
 // Returns the weighted sum of the four mixed columns of the sixteen pixels that begin at `first`.
-// `right` holds the weights of the columns, in the layout of CubicTables::right.
-template <int kShift, class D, class V16>
-HWY_ATTR HWY_INLINE hn::Vec<hn::Full128<int32_t>> MixSixteen(D d, const ColumnWeights<V16>& down,
+//   upper, lower  weights of rows, as for MixColumns()
+//   right         weights of the columns, in the layout of CubicTables::right
+template <class D, class V16>
+HWY_ATTR HWY_INLINE hn::Vec<hn::Full128<int32_t>> MixSixteen(D d, V16 upper, V16 lower,
                                                              const int32_t* right,
                                                              const uint16_t* first,
                                                              ptrdiff_t row_values) {
   const hn::Full128<int32_t> d128;
   const hn::Repartition<uint16_t, D> d16;
   hn::Vec<D> low, high;
-  MixColumns<kShift>(d16, down, first, row_values, &low, &high);
+  MixColumns(d16, upper, lower, first, row_values, &low, &high);
   if constexpr (hn::MaxLanes(d) >= 8) {
     const auto sum =
         hn::Add(hn::Mul(low, hn::LoadU(d, right)), hn::Mul(high, hn::LoadU(d, right + 8)));
     return hn::Add(hn::LowerHalf(d128, sum), hn::UpperHalf(d128, sum));
   } else {
     hn::Vec<D> next_low, next_high;
-    MixColumns<kShift>(d16, down, first + ptrdiff_t{2} * LfPixels::kRgbLanes, row_values, &next_low,
-                       &next_high);
+    MixColumns(d16, upper, lower, first + ptrdiff_t{2} * LfPixels::kRgbLanes, row_values, &next_low,
+               &next_high);
     const auto sum =
         hn::Add(hn::Mul(low, hn::LoadU(d, right)), hn::Mul(high, hn::LoadU(d, right + 8)));
     return hn::Add(sum, hn::Add(hn::Mul(next_low, hn::LoadU(d, right + 4)),
@@ -163,11 +154,7 @@ HWY_ATTR HWY_INLINE hn::Vec<hn::Full128<int32_t>> CubicRay(const CubicTables& ta
     std::memcpy(&pair, tables.down[down] + row, sizeof(pair));
     return hn::BitCast(d16, hn::Set(d_all, pair));
   };
-  ColumnWeights<hn::Vec<decltype(d16)>> weights_down;
-  weights_down.low[0] = weights_down.high[0] = rows(0);
-  weights_down.low[1] = weights_down.high[1] = rows(2);
-  const auto mixed =
-      MixSixteen<kCubicColumnShift>(d_all, weights_down, tables.right[right], first, row_values);
+  const auto mixed = MixSixteen(d_all, rows(0), rows(2), tables.right[right], first, row_values);
   const auto rounded =
       hn::ShiftRight<kCubicShift>(hn::Add(mixed, hn::Set(d, 1 << (kCubicShift - 1))));
   const auto value = hn::Add(rounded, hn::Set(d, static_cast<int32_t>(kMiddle)));

@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "lf/collection/mosaic_filter.h"
 #include "lf/collection/ray_weight_simd-inl.h"
 #include "lf/film/plate/tile_sums.h"
 #include "lf/light_field/model/lf_pixels.h"
@@ -28,29 +27,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 // element has up to samples^2 rays, whose sums are in `samples` successive elements of `fine`.
 // Returns the number of elements that have a ray.
 #if HWY_TARGET == HWY_SCALAR
-
-template <class Weights>
-uint64_t AddMeans(const TileSums::CountedElement* fine, int samples, int count,
-                  const Weights& weights, TileSums::CountedElement* sums) {
-  uint64_t rays = 0;
-  for (int i = 0; i < count; ++i, fine += samples) {
-    TileSums::CountedElement sum;
-    for (int k = 0; k < samples; ++k)
-      for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane) {
-        sum.rgb[lane] += fine[k].rgb[lane];
-        sum.counts[lane] += fine[k].counts[lane];
-      }
-    const uint32_t most = sum.counts[LfPixels::kRayLane];
-    if (most == 0) continue;
-    for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane) {
-      const uint32_t counted = MeanCount(sum.counts[lane], most) * weights.At(i);
-      sums[i].rgb[lane] += SharedMean(sum.rgb[lane], sum.counts[lane]) * counted;
-      sums[i].counts[lane] += counted;
-    }
-    ++rays;
-  }
-  return rays;
-}
 
 template <class Weights>
 uint64_t AddMeans(const TileSums::Element* fine, int samples, int count, const Weights& weights,
@@ -75,42 +51,6 @@ uint64_t AddMeans(const TileSums::Element* fine, int samples, int count, const W
 // Float division followed by ConvertTo(), which drops the fraction, is exact for numbers up to
 // 2^24, because a quotient that is no integer is farther from the nearest integer than the
 // precision of a float.
-
-template <class Weights>
-HWY_ATTR uint64_t AddMeans(const TileSums::CountedElement* fine, int samples, int count,
-                           const Weights& weights, TileSums::CountedElement* sums) {
-  const hn::Full128<uint32_t> du;
-  const hn::Full128<int32_t> di;
-  const hn::Full128<float> df;
-  const auto divide = [&](hn::Vec<decltype(di)> dividend, hn::Vec<decltype(di)> divisor) HWY_ATTR {
-    // If the element has no ray, all lanes are 0: 0 is then divided by 1.
-    const auto some = hn::Max(divisor, hn::Set(di, 1));
-    return hn::Div(hn::ConvertTo(df, dividend), hn::ConvertTo(df, some));
-  };
-  auto rays = hn::Zero(di);  // lane kRayLane: kRecordedShare times the number of rays
-  for (int i = 0; i < count; ++i, fine += samples) {
-    auto rgb = hn::Load(du, fine[0].rgb), counts = hn::Load(du, fine[0].counts);
-    for (int k = 1; k < samples; ++k) {
-      rgb = hn::Add(rgb, hn::Load(du, fine[k].rgb));
-      counts = hn::Add(counts, hn::Load(du, fine[k].counts));
-    }
-    const auto all = hn::BitCast(di, counts);
-    const auto most = hn::Broadcast<LfPixels::kRayLane>(all);
-    const auto mean_count = hn::ConvertTo(
-        di, divide(hn::Add(hn::Mul(all, hn::Set(di, static_cast<int32_t>(kRecordedShare))),
-                           hn::ShiftRight<1>(most)),
-                   most));
-    rays = hn::Add(rays, mean_count);
-    const auto mean =
-        hn::ConvertTo(di, hn::Add(divide(hn::BitCast(di, rgb), all), hn::Set(df, 0.5F)));
-    auto counted = hn::BitCast(du, mean_count);
-    if constexpr (!Weights::kIsOne) counted = hn::Mul(counted, weights.OfPixels(du, i));
-    TileSums::CountedElement& sum = sums[i];
-    hn::Store(hn::Add(hn::Load(du, sum.rgb), hn::Mul(hn::BitCast(du, mean), counted)), du, sum.rgb);
-    hn::Store(hn::Add(hn::Load(du, sum.counts), counted), du, sum.counts);
-  }
-  return static_cast<uint64_t>(hn::ExtractLane(rays, LfPixels::kRayLane)) / kRecordedShare;
-}
 
 template <class Weights>
 HWY_ATTR uint64_t AddMeans(const TileSums::Element* fine, int samples, int count,

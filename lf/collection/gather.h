@@ -37,16 +37,12 @@
 
 namespace lf {
 
-// The value of a ray in R, G and B, and the number that the ray adds to the count of each colour.
-struct RgbRay {
-  std::array<uint16_t, 3> value = {};
-  std::array<uint32_t, 3> count = {1, 1, 1};
-  friend bool operator==(const RgbRay&, const RgbRay&) = default;
-};
+// The value of a ray in R, G and B.
+using RgbRay = std::array<uint16_t, 3>;
 
 // Returns the ray that the LF image recorded at the continuous position (x, y), interpolated in
 // integers as `sampling` says: bilinearly between the four nearest pixel centres with weights in
-// 1/256, rounded half up, or as cubic_weights.h and mosaic_filter.h say. Returns none unless these
+// 1/256, rounded half up, or as cubic_weights.h says. Returns none unless these
 // four pixels are in the image (of `width_px` x `height_px`) and not masked. If sixteen pixels
 // should be used, but one of the other twelve is missing or masked, the four alone are
 // interpolated.

@@ -39,9 +39,6 @@ struct Places {
   HWY_ALIGN int32_t pixel[kRoom];
   HWY_ALIGN uint32_t left_right[kRoom];  // weights of the left (low 16 bits) and the right pixels
   HWY_ALIGN uint32_t lower[kRoom];       // weights of the two lower pixels
-  // Phase of the Bayer pattern: x % 2 + 2 (y % 2), where (x, y) is the upper left one of the four
-  // pixels, counted in the whole LF image. Only set if NeedsPhases() is true.
-  HWY_ALIGN int32_t phase[kRoom];
 };
 
 // An integer between -2^22 and 2^22 is exact in single precision. If it is added to 2^23 + 2^22,
@@ -98,21 +95,13 @@ HWY_ATTR HWY_INLINE Coordinate Split(hn::Vec<LaneI> found, int32_t last) {
   return {pixel, hn::Sub(position, hn::ShiftLeft<kWeightBits>(pixel))};
 }
 
-// True if Places::phase is needed.
-inline bool NeedsPhases(const GatherSampling& sampling) {
-  return sampling.filter == PixelFilter::kMosaic && !sampling.prefilter.by_shares;
-}
-
 // Stores places.
-//   kIsPlain  true if the filter is neither kNearest nor one that needs phases
+//   kIsPlain  true if the filter is not kNearest
 template <bool kIsPlain>
 class PlaceWriter {
  public:
   HWY_INLINE PlaceWriter(const PixelRect& rect, const GatherSampling& sampling, Places* places)
-      : rect_(rect),
-        is_nearest_(sampling.filter == PixelFilter::kNearest),
-        needs_phases_(NeedsPhases(sampling)),
-        places_(places) {}
+      : rect_(rect), is_nearest_(sampling.filter == PixelFilter::kNearest), places_(places) {}
 
   // Stores the places of kLanes elements, the first of which is element i.
   HWY_ATTR HWY_INLINE void Store(const Coordinate& x, const Coordinate& y, int i) const {
@@ -125,9 +114,6 @@ class PlaceWriter {
     hn::StoreU(hn::BitCast(du, hn::Or(left_weight, hn::ShiftLeft<16>(right_weight))), du,
                places_->left_right + i);
     hn::StoreU(hn::BitCast(du, Rounded(y.weight)), du, places_->lower + i);
-    if (!kIsPlain && needs_phases_)
-      hn::StoreU(hn::Or(Odd(x.pixel, rect_.x_begin), hn::ShiftLeft<1>(Odd(y.pixel, rect_.y_begin))),
-                 di, places_->phase + i);
   }
 
  private:
@@ -136,12 +122,9 @@ class PlaceWriter {
     if (kIsPlain || !is_nearest_) return weight;
     return hn::And(hn::Add(weight, hn::Set(LaneI(), kOne / 2)), hn::Set(LaneI(), kOne));
   }
-  static HWY_ATTR HWY_INLINE hn::Vec<LaneI> Odd(hn::Vec<LaneI> pixel, int first) {
-    return hn::And(hn::Xor(pixel, hn::Set(LaneI(), first)), hn::Set(LaneI(), 1));
-  }
 
   const PixelRect& rect_;
-  bool is_nearest_, needs_phases_;
+  bool is_nearest_;
   Places* places_;
 };
 
@@ -275,7 +258,7 @@ HWY_ATTR void FindPlacesBy(const Segment& s, int begin, int count, const PixelRe
 //   rect  the pixels that are loaded
 inline void FindPlaces(const Segment& s, int begin, int count, const PixelRect& rect,
                        const GatherSampling& sampling, Places* places) {
-  const bool is_plain = sampling.filter != PixelFilter::kNearest && !NeedsPhases(sampling);
+  const bool is_plain = sampling.filter != PixelFilter::kNearest;
   const auto find = s.is_cubic() ? (is_plain ? FindPlacesBy<3, true> : FindPlacesBy<3, false>)
                                  : (is_plain ? FindPlacesBy<5, true> : FindPlacesBy<5, false>);
   find(s, begin, count, rect, sampling, places);

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <tuple>
-#include <utility>
 
 #include "lf/camera/ideal_pixels.h"
 #include "lf/collection/cubic_weights.h"
 #include "lf/collection/gather.h"
 #include "lf/collection/gather_model.h"
-#include "lf/collection/mosaic_filter.h"
 #include "lf/core/check.h"
 
 namespace lf {
@@ -28,24 +25,6 @@ uint16_t Bilinear(const Pixel& pixel, uint32_t right, uint32_t down) {
   return static_cast<uint16_t>((sum + uint64_t{kOne} * kOne / 2) / (uint64_t{kOne} * kOne));
 }
 
-// Like Bilinear(), with the shares of mosaic_filter.h. Returns the value of the ray and its count.
-// share(dx, dy) returns the share s of the pixel whose value is pixel(dx, dy).
-template <class Pixel, class Share>
-std::pair<uint16_t, uint32_t> BilinearByShares(const Pixel& pixel, const Share& share,
-                                               uint32_t right, uint32_t down) {
-  constexpr uint32_t kOne = 256;
-  uint32_t sum = 0, count = 0;
-  for (int dy = 0; dy < 2; ++dy)
-    for (int dx = 0; dx < 2; ++dx) {
-      const uint32_t weight = (dx == 0 ? kOne - right : right) * (dy == 0 ? kOne - down : down);
-      const uint32_t t = (weight * share(dx, dy)) >> kShareShift;
-      sum += t * pixel(dx, dy);
-      count += t;
-    }
-  return {static_cast<uint16_t>(SharedMean(sum, count)),
-          (count + (1 << (kShareBits - 1))) >> kShareBits};
-}
-
 template <class Pixel>
 uint16_t Bicubic(const Pixel& pixel, uint32_t right, uint32_t down) {
   const auto rounded = [](int64_t value, int bits) {
@@ -60,26 +39,6 @@ uint16_t Bicubic(const Pixel& pixel, uint32_t right, uint32_t down) {
     sum += c[k] * rounded(column, kCubicColumnShift);
   }
   return static_cast<uint16_t>(std::clamp<int64_t>(rounded(sum, kCubicShift), 0, 65535));
-}
-
-template <class Pixel, class Share>
-std::pair<uint16_t, uint32_t> BicubicByShares(const Pixel& pixel, const Share& share,
-                                              uint32_t right, uint32_t down) {
-  const CubicTaps d = CubicTapsAt(static_cast<int>(down), kMosaicTapBits);
-  const CubicTaps c = CubicTapsAt(static_cast<int>(right), kMosaicTapBits);
-  int32_t sum = 0, count = 0;
-  for (int k = 0; k < 4; ++k) {
-    int32_t column = 0, column_count = 0;
-    for (int i = 0; i < 4; ++i) {
-      const int32_t weight = d[i] * static_cast<int32_t>(share(k - 1, i - 1));
-      column += weight * (static_cast<int32_t>(pixel(k - 1, i - 1)) - 32768);
-      column_count += weight;
-    }
-    sum += c[k] * ((column + (1 << (kMosaicColumnShift - 1))) >> kMosaicColumnShift);
-    count += c[k] * column_count;
-  }
-  return {static_cast<uint16_t>(CubicMosaicValue(sum, count)),
-          static_cast<uint32_t>((count + (1 << (kMosaicCountBits - 1))) >> kMosaicCountBits)};
 }
 
 }  // namespace
@@ -124,22 +83,12 @@ std::optional<RgbRay> InterpolatePixels(const LfPixels& pixels, int width_px, in
   };
   if (!has_all(0)) return std::nullopt;
   const bool is_cubic = sampling.is_cubic && has_all(1);
-  RgbRay ray;
+  RgbRay ray = {};
   for (int c = 0; c < 3; ++c) {
     const auto pixel = [&](int dx, int dy) -> uint32_t {
       return pixels.radiance.at(column + dx, row + dy, c);
     };
-    const auto share = [&](int dx, int dy) {
-      return RecordedShareOf(pixels.recorded, image_column + dx, image_row + dy, c);
-    };
-    if (sampling.prefilter.by_shares) {
-      ray.value[c] = is_cubic ? Bicubic(pixel, right, down) : Bilinear(pixel, right, down);
-      ray.count[c] = MeanShareOf(pixels.recorded, c);
-    } else if (sampling.filter == PixelFilter::kMosaic)
-      std::tie(ray.value[c], ray.count[c]) = is_cubic ? BicubicByShares(pixel, share, right, down)
-                                                      : BilinearByShares(pixel, share, right, down);
-    else
-      ray.value[c] = is_cubic ? Bicubic(pixel, right, down) : Bilinear(pixel, right, down);
+    ray[c] = is_cubic ? Bicubic(pixel, right, down) : Bilinear(pixel, right, down);
   }
   return ray;
 }
@@ -164,7 +113,7 @@ uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& recorde
   const int samples = sampling.samples;
   // Returns the ray of element (x, y); none if the LF image did not record it.
   const auto ray_of = [&](const GatherModel& model, int x, int y) -> std::optional<RgbRay> {
-    std::array<uint32_t, 3> sum = {}, counted = {};
+    std::array<uint32_t, 3> sum = {};
     uint32_t rays = 0;
     for (int i = 0; i < samples * samples; ++i) {
       const std::optional<Vec2> p =
@@ -172,20 +121,12 @@ uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& recorde
       if (!p) continue;
       const auto ray = InterpolatePixels(pixels, k.width_px, k.height_px, p->x(), p->y(), sampling);
       if (!ray) continue;
-      for (int c = 0; c < 3; ++c) {
-        sum[c] += ray->count[c] * ray->value[c];
-        counted[c] += ray->count[c];
-      }
+      for (int c = 0; c < 3; ++c) sum[c] += (*ray)[c];
       ++rays;
     }
     if (rays == 0) return std::nullopt;
-    const bool is_mosaic = sampling.filter == PixelFilter::kMosaic;
-    RgbRay mean;
-    for (int c = 0; c < 3; ++c) {
-      mean.value[c] = static_cast<uint16_t>(is_mosaic ? SharedMean(sum[c], counted[c])
-                                                      : (sum[c] + rays / 2) / rays);
-      if (is_mosaic) mean.count[c] = MeanCount(counted[c], kRecordedShare * rays);
-    }
+    RgbRay mean = {};
+    for (int c = 0; c < 3; ++c) mean[c] = static_cast<uint16_t>((sum[c] + rays / 2) / rays);
     return mean;
   };
   uint64_t accepted = 0;
@@ -196,10 +137,9 @@ uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& recorde
       for (int x = elements.x_begin; x < elements.x_end; ++x) {
         const auto ray = ray_of(model, x, y);
         if (!ray) continue;
-        for (int channel = 0; channel < SensorPlate::kChannels; ++channel) {
-          const uint64_t count = uint64_t{weights.At(x, y)} * ray->count[channel];
-          plate->Add(x, y, channel, {count * ray->value[channel], count});
-        }
+        const uint64_t weight = weights.At(x, y);
+        for (int channel = 0; channel < SensorPlate::kChannels; ++channel)
+          plate->Add(x, y, channel, {weight * (*ray)[channel], weight});
         ++accepted;
       }
   });

@@ -16,9 +16,9 @@ const char* NameOf(PixelFilter filter) {
   return kNames[static_cast<int>(filter)];
 }
 
-PixelFilter FilterOf(PixelFilter filter, const RadianceEncoding& encoding, bool counts_rays) {
+PixelFilter FilterOf(PixelFilter filter, const RadianceEncoding& encoding) {
   if (filter != PixelFilter::kAuto) return filter;
-  if (encoding.bayer != BayerPattern::kNone && !counts_rays) return PixelFilter::kMosaic;
+  if (encoding.bayer != BayerPattern::kNone) return PixelFilter::kMosaic;
   return encoding.masks_clipped ? PixelFilter::kBicubic : PixelFilter::kPrefiltered;
 }
 
@@ -26,38 +26,26 @@ GatherSampling SamplingOf(const PinholeCamera& lf_camera, const RenderCamera& re
                           const PixelReading& reading) {
   const double width_px = ElementWidth_px(lf_camera, render_camera);
   GatherSampling sampling;
-  sampling.filter = FilterOf(reading.filter, RadianceEncoding(), false);
-  const PixelFootprint footprint = reading.footprint.value_or(PixelFootprint::kArea);
+  sampling.filter = FilterOf(reading.filter, RadianceEncoding());
+  const bool is_mosaic = sampling.filter == PixelFilter::kMosaic;
+  if (is_mosaic) sampling.filter = PixelFilter::kPrefiltered;
   const bool may_lack_rays = MayLackRays(lf_camera.intrinsics);
-  const bool corrects = sampling.filter == PixelFilter::kMosaic;
-  if (corrects) sampling.filter = PixelFilter::kPrefiltered;
-  const bool is_mosaic = false;
-  const bool are_finer = width_px > kFinerAtMost;
-  const bool by_shares = is_mosaic && width_px >= kMosaicByShares;
-  const bool prefilters = sampling.filter == PixelFilter::kPrefiltered || by_shares ||
-                          (is_mosaic && !are_finer && footprint == PixelFootprint::kArea);
-  // A prefilter would mix pixels that have no ray into those that have one.
-  if (prefilters && !may_lack_rays) {
+  const bool prefilters = sampling.filter == PixelFilter::kPrefiltered && !may_lack_rays;
+  if (prefilters) {
     sampling.step_px = static_cast<int>(std::clamp(std::round(width_px), 1.0, kWidestElement_px));
-    sampling.is_cubic = by_shares && width_px < kMosaicOfFour;
-    sampling.prefilter = sampling.is_cubic ? MeanOfMosaic(width_px, footprint)
-                         : by_shares       ? PrefilterOfMosaic(width_px, footprint)
-                                           : PrefilterFor(width_px, footprint);
-    if (corrects) sampling.prefilter.correction = reading.correction;
-    return sampling;
+    sampling.prefilter = PrefilterFor(width_px, reading.footprint.value_or(PixelFootprint::kArea));
   }
-  if (sampling.filter == PixelFilter::kPrefiltered) sampling.filter = PixelFilter::kBilinear;
+  if (is_mosaic) sampling.prefilter.correction = reading.correction;
+  if (prefilters) return sampling;
+  // Prefilters and cubics would mix pixels that have no ray into those that have one.
+  if (may_lack_rays && sampling.filter != PixelFilter::kNearest)
+    sampling.filter = PixelFilter::kBilinear;
   // A value just above a whole number counts as that number.
   constexpr double kRounding = 1e-3;
-  if (are_finer)
+  if (width_px > kFinerAtMost)
     sampling.samples =
         static_cast<int>(std::ceil(std::min<double>(width_px - kRounding, kMostSamples)));
-  sampling.is_cubic = sampling.filter == PixelFilter::kBicubic ||
-                      (sampling.filter == PixelFilter::kMosaic && sampling.samples < kBilinearFrom);
-  if (sampling.is_cubic && may_lack_rays) {
-    sampling.is_cubic = false;
-    if (sampling.filter == PixelFilter::kBicubic) sampling.filter = PixelFilter::kBilinear;
-  }
+  sampling.is_cubic = sampling.filter == PixelFilter::kBicubic;
   return sampling;
 }
 

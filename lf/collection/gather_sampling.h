@@ -13,22 +13,11 @@
 namespace lf {
 
 // Returns the filter that `filter` stands for, which is never kAuto. kAuto is
-//   kMosaic      for mosaics, unless an option needs the number of rays of elements (counts_rays,
-//                FilmSettings::CountsRays()), which kMosaic does not tell
+//   kMosaic      for mosaics
 //   kBicubic     for brackets, because each of their LF images has the pixels of only some regions,
 //                at whose borders a prefilter lacks pixels
 //   kPrefiltered otherwise
-PixelFilter FilterOf(PixelFilter filter, const RadianceEncoding& encoding, bool counts_rays);
-
-// Widths of elements, in LF pixels, from which a mosaic is filtered by shares, and from which four
-// filtered values are read instead of sixteen. They were chosen with pictures of true lenses
-// (doc/quality.md): filters whose knots are midway between pixels blur narrower elements.
-inline constexpr double kMosaicByShares = 1.75;
-inline constexpr double kMosaicOfFour = 2.5;
-
-// Number of samples along an edge of an element from which mosaics that cannot be filtered (see
-// MayLackRays) are interpolated between four pixels.
-inline constexpr int kBilinearFrom = 3;
+PixelFilter FilterOf(PixelFilter filter, const RadianceEncoding& encoding);
 
 // Largest number of samples along an edge of an element.
 inline constexpr int kMostSamples = static_cast<int>(kWidestElement_px);
@@ -39,7 +28,7 @@ bool MayLackRays(const Intrinsics& k);
 
 // How the elements of one frame sample one LF image.
 struct GatherSampling {
-  PixelFilter filter = PixelFilter::kBilinear;  // never kAuto
+  PixelFilter filter = PixelFilter::kBilinear;  // never kAuto, nor kMosaic
   bool is_cubic = false;  // true: interpolates between sixteen pixels where possible
   // Number of samples along each edge of an element: the number of LF pixels along an edge, rounded
   // up, at most kMostSamples; 1 if there are at most kFinerAtMost LF pixels along an edge, or if

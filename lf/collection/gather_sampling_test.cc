@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <utility>
 
 #include "lf/camera/magnification.h"
 #include "lf/camera/testing_scenes.h"
@@ -52,21 +51,17 @@ TEST(GatherSampling, TakesAsManySamplesAsLfPixelsAreSmaller) {
   EXPECT_EQ(of(0.01).samples, kMostSamples);
   EXPECT_EQ(of(0.3).filter, PixelFilter::kBicubic);
   EXPECT_TRUE(of(0.3).is_cubic);
-  EXPECT_TRUE(of(0.6, PixelFilter::kMosaic).is_cubic);
-  EXPECT_EQ(of(0.6, PixelFilter::kMosaic).samples, 2);
-  EXPECT_EQ(of(0.6, PixelFilter::kMosaic).prefilter, Prefilter());
   EXPECT_EQ(of(2, PixelFilter::kNearest).filter, PixelFilter::kNearest);
 }
 
-TEST(GatherSampling, TheFilterAutoDependsOnTheLightFieldAndOnCounts) {
+TEST(GatherSampling, TheFilterAutoDependsOnTheLightField) {
   RadianceEncoding mosaic, brackets;
   mosaic.bayer = BayerPattern::kRggb;
   brackets.masks_clipped = true;
-  EXPECT_EQ(FilterOf(PixelFilter::kAuto, {}, false), PixelFilter::kPrefiltered);
-  EXPECT_EQ(FilterOf(PixelFilter::kAuto, mosaic, false), PixelFilter::kMosaic);
-  EXPECT_EQ(FilterOf(PixelFilter::kAuto, mosaic, true), PixelFilter::kPrefiltered);
-  EXPECT_EQ(FilterOf(PixelFilter::kAuto, brackets, true), PixelFilter::kBicubic);
-  EXPECT_EQ(FilterOf(PixelFilter::kBicubic, mosaic, false), PixelFilter::kBicubic);
+  EXPECT_EQ(FilterOf(PixelFilter::kAuto, {}), PixelFilter::kPrefiltered);
+  EXPECT_EQ(FilterOf(PixelFilter::kAuto, mosaic), PixelFilter::kMosaic);
+  EXPECT_EQ(FilterOf(PixelFilter::kAuto, brackets), PixelFilter::kBicubic);
+  EXPECT_EQ(FilterOf(PixelFilter::kBicubic, mosaic), PixelFilter::kBicubic);
 }
 
 TEST(GatherSampling, APrefilterReplacesSamples) {
@@ -80,41 +75,43 @@ TEST(GatherSampling, APrefilterReplacesSamples) {
   }
 }
 
-// Shares belong to pixels (mosaic_filter.h): the values of a filtered mosaic must stand at the
-// centres of pixels.
-TEST(GatherSampling, AMosaicIsPrefilteredIfItsPixelsShowAreasAndAreNotFiner) {
-  const auto of = [](double magnification, PixelFootprint footprint) {
-    const testing::CameraPair pair = PairOf(magnification);
-    PixelReading reading = PixelFilter::kMosaic;
-    reading.footprint = footprint;
-    return SamplingOf(pair.lf_camera, pair.render_camera, reading);
-  };
-  for (const double magnification : {3.0, 1.0, 0.81}) {
-    const GatherSampling areas = of(magnification, PixelFootprint::kArea);
-    EXPECT_EQ(areas.prefilter, PrefilterFor(1, PixelFootprint::kArea));
-    EXPECT_FALSE(areas.prefilter.is_even);
-    EXPECT_FALSE(areas.is_cubic);
-    const GatherSampling points = of(magnification, PixelFootprint::kPoint);
-    EXPECT_EQ(points.prefilter, Prefilter());
-    EXPECT_TRUE(points.is_cubic);
-  }
-  EXPECT_EQ(of(0.79, PixelFootprint::kArea).prefilter, Prefilter());
-}
-
-TEST(GatherSampling, AMosaicIsFilteredBySharesIfItsPixelsAreMuchFiner) {
-  for (const double magnification : {0.57, 0.5, 0.41, 0.39, 0.1})
+TEST(GatherSampling, MosaicsArePrefilteredAfterTheirCorrection) {
+  for (const double magnification : {3.0, 1.0, 0.79, 0.5, 0.1})
     for (const auto footprint : {PixelFootprint::kArea, PixelFootprint::kPoint}) {
       const testing::CameraPair pair = PairOf(magnification);
       PixelReading reading = PixelFilter::kMosaic;
       reading.footprint = footprint;
+      reading.correction = 2;
       const GatherSampling sampling = SamplingOf(pair.lf_camera, pair.render_camera, reading);
+      Prefilter expected = PrefilterFor(1 / magnification, footprint);
+      expected.correction = 2;
+      EXPECT_EQ(sampling.prefilter, expected);
+      EXPECT_EQ(sampling.filter, PixelFilter::kPrefiltered);
       EXPECT_EQ(sampling.samples, 1);
-      EXPECT_TRUE(sampling.prefilter.by_shares);
-      EXPECT_EQ(sampling.is_cubic, magnification > 0.4);
-      EXPECT_EQ(sampling.prefilter, magnification > 0.4
-                                        ? MeanOfMosaic(1 / magnification, footprint)
-                                        : PrefilterOfMosaic(1 / magnification, footprint));
+      EXPECT_FALSE(sampling.is_cubic);
+      reading.filter = PixelFilter::kPrefiltered;
+      EXPECT_EQ(SamplingOf(pair.lf_camera, pair.render_camera, reading).prefilter.correction, 0);
     }
+}
+
+// The corners of this LF image lie beyond the fold of its distortion. Its pixels are corrected, but
+// elements are the means of bilinear samples.
+TEST(GatherSampling, MosaicsThatMayLackRaysAreOnlyCorrected) {
+  testing::CameraPair pair = PairOf(0.5);
+  Intrinsics& k = pair.lf_camera.intrinsics;
+  k.distortion = {DistortionModel::kRadialTangential, {-0.9}};
+  k.width_px = k.height_px = static_cast<int>(2 * k.fx_px);
+  k.cx_px = k.cy_px = k.fx_px;
+  ASSERT_TRUE(MayLackRays(k));
+  PixelReading reading = PixelFilter::kMosaic;
+  reading.correction = 3;
+  const GatherSampling sampling = SamplingOf(pair.lf_camera, pair.render_camera, reading);
+  EXPECT_EQ(sampling.filter, PixelFilter::kBilinear);
+  EXPECT_FALSE(sampling.is_cubic);
+  EXPECT_GT(sampling.samples, 1);
+  Prefilter expected;
+  expected.correction = 3;
+  EXPECT_EQ(sampling.prefilter, expected);
 }
 
 // Elements may be wider than any integer, in LF pixels, because a frame may show the light field
@@ -194,38 +191,6 @@ TEST(PixelFilter, ConstantPicturesStayWhatTheyAre) {
             EXPECT_EQ(element.sum, element.count * value);
           }
       }
-}
-
-// GRBG: red is recorded at odd x and even y.
-TEST(PixelFilter, WhatAMosaicRecordedCountsMore) {
-  LfPixels pixels({0, 0, 8, 6}, BayerPattern::kNone);
-  pixels.recorded = BayerPattern::kGrbg;
-  for (int y = 0; y < 6; ++y)
-    for (int x = 0; x < 8; ++x)
-      pixels.radiance.at(x, y, 0) = BayerChannel(pixels.recorded, x, y) == 0 ? 9000 : 0;
-  const auto red_at = [&](double x, double y, bool is_cubic = false) {
-    const RgbRay ray = *InterpolatePixels(pixels, 8, 6, x, y, {PixelFilter::kMosaic, is_cubic});
-    return std::pair<int, uint32_t>(ray.value[0], ray.count[0]);
-  };
-  EXPECT_EQ(red_at(3.5, 2.5), std::pair(9000, 8u));
-  EXPECT_EQ(red_at(4.5, 2.5), std::pair(0, 1u));
-  EXPECT_EQ(red_at(4, 2.5), std::pair(8000, 5u));  // 9000 * 8 / 9; 9 / 2 rays
-  EXPECT_EQ(red_at(4, 3), std::pair(6545, 3u));    // 9000 * 8 / 11; 11 / 4 rays
-  // At these positions, recorded pixels have the same total share of sixteen pixels as of four.
-  EXPECT_EQ(red_at(3.5, 2.5, true), std::pair(9000, 8u));
-  EXPECT_EQ(red_at(4, 3, true), std::pair(6545, 3u));
-  EXPECT_EQ(red_at(3, 2.5, true), std::pair(8000, 5u));
-  // Filtered by shares, every ray counts as the mean share.
-  LfPixels filtered;
-  const GatherSampling by_shares{PixelFilter::kMosaic, true, 1, 2,
-                                 MeanOfMosaic(2, PixelFootprint::kPoint)};
-  FilterPixels(by_shares.prefilter, pixels, &filtered);
-  const RgbRay ray = *InterpolatePixels(filtered, 8, 6, 4.3, 3.2, by_shares);
-  EXPECT_NEAR(ray.value[0], 6545, 5);
-  EXPECT_EQ(ray.count, (std::array<uint32_t, 3>{3, 5, 3}));
-  pixels.recorded = BayerPattern::kNone;
-  EXPECT_EQ(red_at(4, 3), std::pair(2250, 8u));
-  EXPECT_EQ(red_at(4, 3, true), std::pair(2250, 8u));
 }
 
 }  // namespace

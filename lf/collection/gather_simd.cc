@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The inner loop of the estimator *bilinear*, compiled for every instruction set from one source
 // (Highway). Polynomials are evaluated for a vector of positions at a time. Four or sixteen pixels,
-// each of four lanes of 16 bits, are then mixed in integers (means of several rays and mosaics also
-// in single precision) and added to the element. There is no fused multiply-add, so that results
-// are bit-identical on every instruction set.
+// each of four lanes of 16 bits, are then mixed in integers (means of several rays also in single
+// precision) and added to the element. There is no fused multiply-add, so that results are
+// bit-identical on every instruction set.
 #include <algorithm>
-#include <type_traits>
 #include <vector>
 
 #include "lf/collection/gather.h"
@@ -23,7 +22,6 @@
 #include "lf/collection/cubic_simd-inl.h"
 #include "lf/collection/element_means_simd-inl.h"
 #include "lf/collection/gather_places_simd-inl.h"
-#include "lf/collection/mosaic_simd-inl.h"
 #include "lf/collection/ray_weight_simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -46,41 +44,12 @@ bool IsInner(const Segment& s, int begin, int count, const PixelRect& rect, bool
          is_inner(RangeOf(s.y_poly, t, count), s.base_y, rect.y_begin, rect.y_end);
 }
 
-// The pixels that a ray is interpolated between: four or sixteen, with or without the shares that
-// mosaic_filter.h gives them, or of an LF image that was filtered by shares.
-enum class Reading {
-  kFour,
-  kSixteen,
-  kMosaicFour,
-  kMosaicSixteen,
-  kMeanShareFour,
-  kMeanShareSixteen
-};
-
-constexpr bool IsMosaic(Reading reading) { return reading >= Reading::kMosaicFour; }
-constexpr bool IsCubic(Reading reading) {
-  return reading == Reading::kSixteen || reading == Reading::kMosaicSixteen ||
-         reading == Reading::kMeanShareSixteen;
-}
-
-Reading ReadingOf(const GatherSampling& sampling) {
-  if (sampling.prefilter.by_shares)
-    return sampling.is_cubic ? Reading::kMeanShareSixteen : Reading::kMeanShareFour;
-  if (sampling.filter == PixelFilter::kMosaic)
-    return sampling.is_cubic ? Reading::kMosaicSixteen : Reading::kMosaicFour;
-  return sampling.is_cubic ? Reading::kSixteen : Reading::kFour;
-}
-
-template <Reading kReading>
-using ElementOf =
-    std::conditional_t<IsMosaic(kReading), TileSums::CountedElement, TileSums::Element>;
-
 // Adds rays that are interpolated between the pixels at `places`: ray i to element i of `sums`.
-template <Reading kReading, class Weights>
+template <bool kIsCubic, class Weights>
 class RayAdder {
  public:
   HWY_INLINE RayAdder(const Places& places, const LfPixels& pixels, int step_px,
-                      const Weights& weights, ElementOf<kReading>* sums)
+                      const Weights& weights, TileSums::Element* sums)
       : places_(places),
         width_(pixels.rect.width()),
         height_(pixels.rect.height()),
@@ -90,8 +59,7 @@ class RayAdder {
         reads_new_rows_(step_px > 1),
         weights_(weights),
         sums_(sums),
-        cubics_(TablesOfCubics()),
-        mosaic_(TableOfMosaic(pixels.recorded)) {}
+        cubics_(TablesOfCubics()) {}
 
   // Returns the upper left one of the four pixels of ray i.
   HWY_INLINE const uint16_t* Upper(int i) const {
@@ -123,25 +91,15 @@ class RayAdder {
     return unmasked == taps * taps;
   }
 
-  // AddOfFour() adds ray i, interpolated between four pixels. Add() interpolates between the number
-  // of pixels that `kReading` says.
+  // AddOfFour() adds ray i, interpolated between four pixels. Add() interpolates between sixteen if
+  // kIsCubic is true.
   HWY_ATTR HWY_INLINE void AddOfFour(int i) const {
-    if constexpr (kReading >= Reading::kMeanShareFour)
-      AddMeanShareRay<Weights>(mosaic_, places_, i, values_, row_values_, weights_, sums_);
-    else if constexpr (IsMosaic(kReading))
-      AddMosaicRay<Weights>(mosaic_, places_, i, values_, row_values_, weights_, sums_);
-    else
-      AddRay<Weights>(places_, i, values_, row_values_, weights_, sums_);
+    AddRay<Weights>(places_, i, values_, row_values_, weights_, sums_);
   }
   HWY_ATTR HWY_INLINE void Add(int i) const {
-    const uint16_t* const first = Upper(i) - row_values_ - LfPixels::kRgbLanes;
-    if constexpr (kReading == Reading::kMosaicSixteen)
-      AddCubicMosaicRay(cubics_, mosaic_, places_, i, first, row_values_, weights_, sums_);
-    else if constexpr (kReading == Reading::kMeanShareSixteen)
-      AddCubicMeanShareRay(cubics_, mosaic_, places_, i, first, row_values_, weights_, sums_);
-    else if constexpr (kReading == Reading::kSixteen)
-      AddCubicRay(cubics_, places_.left_right[i] >> 16, places_.lower[i], first, row_values_,
-                  weights_, i, sums_);
+    if constexpr (kIsCubic)
+      AddCubicRay(cubics_, places_.left_right[i] >> 16, places_.lower[i],
+                  Upper(i) - row_values_ - LfPixels::kRgbLanes, row_values_, weights_, i, sums_);
     else
       AddOfFour(i);
   }
@@ -149,17 +107,11 @@ class RayAdder {
   // Adds rays [i, i + kCount).
   template <int kCount>
   HWY_ATTR HWY_INLINE void AddAll(int i) const {
-    if constexpr (kReading == Reading::kFour)
+    if constexpr (kIsCubic)
+      for (int k = i; k < i + kCount; ++k) Add(k);
+    else
       for (int k = i; k < i + kCount; k += kRaysAtOnce)
         AddRays(places_, k, values_, row_values_, weights_, sums_);
-    else if constexpr (kReading == Reading::kMosaicFour)
-      for (int k = i; k < i + kCount; k += kRaysAtOnce)
-        AddMosaicRays(mosaic_, places_, k, values_, row_values_, weights_, sums_);
-    else if constexpr (kReading == Reading::kMeanShareFour)
-      for (int k = i; k < i + kCount; k += kRaysAtOnce)
-        AddMeanShareRays(mosaic_, places_, k, values_, row_values_, weights_, sums_);
-    else
-      for (int k = i; k < i + kCount; ++k) Add(k);
   }
 
  private:
@@ -169,23 +121,21 @@ class RayAdder {
   ptrdiff_t row_values_, ahead_values_;
   bool reads_new_rows_;  // true: no row of pixels is read by two rows of elements
   const Weights weights_;
-  ElementOf<kReading>* sums_;
+  TileSums::Element* sums_;
   const CubicTables& cubics_;
-  const MosaicTable& mosaic_;
 };
 
 // Adds the rays of elements [begin, begin + count) of the segment; `weights` and `sums` begin at
 // the first of these elements. Returns the number of rays.
-template <Reading kReading, bool kMayBeMasked, class Weights>
+template <bool kIsCubic, bool kMayBeMasked, class Weights>
 HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, const GatherSampling& sampling,
                              const LfPixels& pixels, const Weights& weights,
-                             ElementOf<kReading>* sums) {
-  constexpr bool kIsCubic = IsCubic(kReading);
+                             TileSums::Element* sums) {
   constexpr int kLinePixels = 8;  // pixels of an LF image in a cache line
   const int line_elements = std::max(1, kLinePixels / sampling.step_px);
   Places places;
   FindPlaces(s, begin, count, pixels.rect, sampling, &places);
-  const RayAdder<kReading, Weights> adder(places, pixels, sampling.step_px, weights, sums);
+  const RayAdder<kIsCubic, Weights> adder(places, pixels, sampling.step_px, weights, sums);
   if (kMayBeMasked ||
       (kIsCubic && !IsInner(s, begin, count, pixels.rect, sampling.prefilter.is_even))) {
     uint32_t rays = 0;
@@ -210,17 +160,17 @@ HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, const Gathe
   return static_cast<uint32_t>(count);
 }
 
-template <Reading kReading, class Weights>
+template <bool kIsCubic, class Weights>
 auto GatherPartOf(const LfPixels& pixels) {
-  return pixels.any_masked ? GatherPart<kReading, true, Weights>
-                           : GatherPart<kReading, false, Weights>;
+  return pixels.any_masked ? GatherPart<kIsCubic, true, Weights>
+                           : GatherPart<kIsCubic, false, Weights>;
 }
 
 // Adds to each element of the tile its one ray, if it has one. Returns the number of rays.
-template <Reading kReading, class Weights>
+template <bool kIsCubic, class Weights>
 HWY_ATTR uint64_t GatherRays(const GatherPlan& plan, const LfPixels& pixels, const Weights& weights,
-                             const PixelRect& tile, int stride, ElementOf<kReading>* elements) {
-  const auto gather = GatherPartOf<kReading, Weights>(pixels);
+                             const PixelRect& tile, int stride, TileSums::Element* elements) {
+  const auto gather = GatherPartOf<kIsCubic, Weights>(pixels);
   uint64_t rays = 0;
   for (int y = tile.y_begin; y < tile.y_end; ++y) {
     const ptrdiff_t row = static_cast<ptrdiff_t>(y - tile.y_begin) * stride;
@@ -240,13 +190,13 @@ HWY_ATTR uint64_t GatherRays(const GatherPlan& plan, const LfPixels& pixels, con
 // Adds the mean of several rays to each element. The rays of a row of elements are first summed in
 // a row of finer elements, `samples` for each element. Returns the number of elements that have a
 // ray.
-template <Reading kReading, class Weights>
+template <bool kIsCubic, class Weights>
 HWY_ATTR uint64_t GatherMeans(const GatherPlan& plan, const LfPixels& pixels,
                               const Weights& weights, const PixelRect& tile, int stride,
-                              ElementOf<kReading>* elements) {
-  const auto gather = GatherPartOf<kReading, WeightOne>(pixels);
+                              TileSums::Element* elements) {
+  const auto gather = GatherPartOf<kIsCubic, WeightOne>(pixels);
   const int samples = plan.sampling.samples;
-  thread_local std::vector<ElementOf<kReading>> fine;
+  thread_local std::vector<TileSums::Element> fine;
   uint64_t rays = 0;
   // The row is cut into chunks, so that the finer elements of a chunk, and the pixel indices and
   // weights of its rays (`Places`), stay in the L1 cache.
@@ -277,11 +227,11 @@ HWY_ATTR uint64_t GatherMeans(const GatherPlan& plan, const LfPixels& pixels,
   return rays;
 }
 
-template <Reading kReading, class Weights>
+template <bool kIsCubic, class Weights>
 uint64_t GatherAs(const GatherPlan& plan, const LfPixels& pixels, const Weights& weights,
-                  const TileSums& sums, ElementOf<kReading>* elements) {
+                  const TileSums& sums, TileSums::Element* elements) {
   const auto gather =
-      plan.sampling.samples == 1 ? GatherRays<kReading, Weights> : GatherMeans<kReading, Weights>;
+      plan.sampling.samples == 1 ? GatherRays<kIsCubic, Weights> : GatherMeans<kIsCubic, Weights>;
   return gather(plan, pixels, weights, sums.rect(), sums.stride(), elements);
 }
 
@@ -290,19 +240,8 @@ uint64_t GatherAs(const GatherPlan& plan, const LfPixels& pixels, const Weights&
 template <class Weights>
 uint64_t GatherBy(const GatherPlan& plan, const LfPixels& pixels, const Weights& weights,
                   uint32_t most_weight, TileSums* sums) {
-  const Reading reading = ReadingOf(plan.sampling);
+  const auto gather = plan.sampling.is_cubic ? GatherAs<true, Weights> : GatherAs<false, Weights>;
   // Each element gets at most one ray, so that the sums need room for only one more ray.
-  if (IsMosaic(reading)) {
-    const auto gather =
-        reading == Reading::kMosaicSixteen   ? GatherAs<Reading::kMosaicSixteen, Weights>
-        : reading == Reading::kMosaicFour    ? GatherAs<Reading::kMosaicFour, Weights>
-        : reading == Reading::kMeanShareFour ? GatherAs<Reading::kMeanShareFour, Weights>
-                                             : GatherAs<Reading::kMeanShareSixteen, Weights>;
-    TileSums::CountedElement* const elements = sums->ReserveCounted(most_weight * kRecordedShare);
-    return gather(plan, pixels, weights, *sums, elements);
-  }
-  const auto gather = reading == Reading::kSixteen ? GatherAs<Reading::kSixteen, Weights>
-                                                   : GatherAs<Reading::kFour, Weights>;
   TileSums::Element* const elements = sums->ReserveRgb(most_weight);
   return gather(plan, pixels, weights, *sums, elements);
 }

@@ -16,17 +16,11 @@ namespace lf {
 //              of the sharpness that is lost because a camera averages over each pixel, and takes
 //              three times as long as kBilinear. If one of the outer twelve pixels is outside the
 //              image or masked, the ray is bilinear
-//   kMosaic    is for RGB pixels made from a mosaic. A recorded colour counts more than an
-//              interpolated one (mosaic_filter.h), and the ray adds a count from 1 to
-//              kRecordedShare to each colour. It uses
-//                - four values of an LF image that was filtered before, if LF pixels show areas and
-//                  are not finer than elements
-//                - values of an LF image that was filtered by shares (Prefilter::by_shares), if
-//                  elements are at least kMosaicByShares LF pixels wide: sixteen, or four from
-//                  kMosaicOfFour on
-//                - otherwise sixteen pixels for each sample
 //   kPrefiltered  interpolates linearly between four values of an LF image that was filtered before
-//              (prefilter.h), so that an element of any size needs only one sample
+//              (prefilter.h), so that an element of any size needs only one sample. Images that may
+//              lack rays (MayLackRays()) are not filtered: the ray is bilinear
+//   kMosaic    is for RGB pixels made from a mosaic. Does the same as kPrefiltered, after a
+//              correction of the pixels (Prefilter::correction)
 //   kAuto      stands for the filter that FilterOf() returns for the whole light field;
 //              SamplingOf() takes it as kPrefiltered
 enum class PixelFilter { kAuto, kNearest, kBilinear, kBicubic, kMosaic, kPrefiltered };

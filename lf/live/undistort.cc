@@ -87,7 +87,7 @@ void Undistort(const LfPixels& pixels, const Intrinsics& k, const Intrinsics& pi
       }
       out->any_masked |= !ray;
       const RgbRay value = ray.value_or(RgbRay());
-      std::copy(value.value.begin(), value.value.end(), to);
+      std::copy(value.begin(), value.end(), to);
       to[LfPixels::kRayLane] = ray ? 1 : 0;
     }
   }

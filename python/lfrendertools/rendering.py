@@ -46,8 +46,8 @@ class Renderer:
         or by interpolation between the nearest LF images. Default "auto": "area" for large lenses, "hat" for small
         ones, and a mix between.
     lf_pixels : {"auto", "areas", "points"}
-        What LF pixels show, for the filter "prefiltered": the mean light of their area, or the light of their centre.
-        Default "auto": as the light field states, otherwise measured.
+        What LF pixels show, for the filters "prefiltered" and "mosaic": the mean light of their area, or the light of
+        their centre. Default "auto": as the light field states, otherwise measured.
     order : {"spread", "shuffle", "round-robin", "area", "groups"}
         Order in which frames take LF images, which matters if they end early. Default "spread": spread evenly over the
         lens, however many are taken. "groups": predicted LF images of packed stores are decoded with little memory.

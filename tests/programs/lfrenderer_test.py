@@ -133,14 +133,16 @@ class RendererTest(unittest.TestCase):
         bilinear, _ = self.render(field, path, "bilinear", "--filter", "bilinear")
         self.assertNotEqual(bilinear, expected)
 
-    def test_rays_of_mosaics_are_counted_where_they_count_once(self):
+    def test_rays_of_mosaics_are_counted(self):
         flat = lambda index: np.full((HEIGHT, WIDTH), 120, np.uint8)
         field = write_field(self.folder / "mosaics", flat, lf_bayer="RGGB", lf_transfer="sRGB")
         path, rule = write_path(self.folder), ["--require", "samples>=1"]
-        self.fails(2, "--filter mosaic: a ray counts up to 8 times", field, path, "-o",
-                   self.folder / "out", "--filter", "mosaic", *rule)
         _, report = self.render(field, path, "counted", *rule)
-        self.assertEqual(report["inputs"]["filter"], "prefiltered")
+        self.assertEqual(report["inputs"]["filter"], "mosaic")
+        counted = report["frames"]
+        _, report = self.render(field, path, "bilinear", "--filter", "bilinear", *rule)
+        for key in ("rays_accepted", "rays_per_element_median", "samples"):
+            self.assertEqual([frame[key] for frame in counted], [frame[key] for frame in report["frames"]])
 
     def test_auto_weights_say_what_they_are_and_warn(self):
         field = write_field(self.folder / "field")

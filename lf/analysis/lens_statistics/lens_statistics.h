@@ -15,7 +15,7 @@
 //   kTrimmed  the mean without floor(trim * n) of the n values at each end: less noise than the
 //             median, for things that hide an element from less than the share `trim`
 //   kMean     the mean: the frame of lfrenderer --lens-weights none, bit for bit, unless LF images
-//             are mosaics, whose colours count differently there
+//             are mosaics, whose pixels are corrected there
 //
 // Values are integers before they are developed, and statistics are sums and counts of them.
 // Therefore the result has the same bits for any order of LF images, any number of threads and any

@@ -61,8 +61,8 @@ Result<void> CheckOptions(const LensStatisticOptions& options) {
         options.trim));
   if (options.filter == PixelFilter::kMosaic)
     return UsageError(
-        "the filter mosaic cannot be used for statistics over the lens, because its rays count "
-        "differently in each colour: use auto or another filter");
+        "the filter mosaic cannot be used for statistics over the lens, because it corrects "
+        "mosaics for means of many rays: use auto or another filter");
   return {};
 }
 
@@ -91,6 +91,17 @@ Result<void> CheckSettings(const RenderOptions& options) {
   return {};
 }
 
+// Returns the filter that options.filter stands for.
+PixelFilter StatisticFilter(const LensStatisticOptions& options, const RadianceEncoding& encoding) {
+  // Prefilters and cubics undershoot and overshoot beside edges, and extremes would show just this.
+  const bool is_extreme =
+      options.statistic == LensStatistic::kMin || options.statistic == LensStatistic::kMax;
+  if (is_extreme && options.filter == PixelFilter::kAuto) return PixelFilter::kBilinear;
+  // The correction of a mosaic is made for means of many rays.
+  const PixelFilter filter = FilterOf(options.filter, encoding);
+  return filter == PixelFilter::kMosaic ? PixelFilter::kPrefiltered : filter;
+}
+
 }  // namespace
 
 RenderOptions RenderOptionsOf(const LensStatisticOptions& options,
@@ -98,12 +109,7 @@ RenderOptions RenderOptionsOf(const LensStatisticOptions& options,
   RenderOptions render;
   FilmSettings& film = render.film;
   film.reading = Estimator::kBilinear;
-  // Prefilters and cubics undershoot and overshoot beside edges, and extremes would show just this.
-  const bool is_extreme =
-      options.statistic == LensStatistic::kMin || options.statistic == LensStatistic::kMax;
-  film.reading.filter = is_extreme && options.filter == PixelFilter::kAuto
-                            ? PixelFilter::kBilinear
-                            : FilterOf(options.filter, encoding, true);
+  film.reading.filter = StatisticFilter(options, encoding);
   film.reading.footprint = options.footprint;
   film.lens_weights = LensWeights::kNone;
   film.guard = false;  // virtual LF images are left out

@@ -2,7 +2,6 @@
 #include "lf/collection/prefilter/prefilter.h"
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -15,26 +14,6 @@ namespace lf {
 namespace {
 
 constexpr size_t kLanes = LfPixels::kRgbLanes;
-
-// Does the first step of FilterPixels() for row `y` of pixels.
-//   row  the row, corrected if the filter corrects
-void FilterAlong(const Prefilter& filter, const LfPixels& pixels, const uint16_t* row, int y,
-                 int count, int32_t* out) {
-  const int width = pixels.radiance.width();
-  if (!filter.by_shares || pixels.recorded == BayerPattern::kNone)
-    return FilterAlongRow(filter, row, width, pixels.any_masked, count, out);
-  std::array<int32_t, 2 * kLanes> factors;
-  for (size_t i = 0; i < factors.size(); ++i) {
-    const int x = static_cast<int>(i / kLanes), lane = static_cast<int>(i % kLanes);
-    factors[i] = lane == LfPixels::kRayLane ? 256
-                                            : ShareFactor(pixels.recorded, pixels.rect.x_begin + x,
-                                                          pixels.rect.y_begin + y, lane);
-  }
-  thread_local std::vector<int32_t> weighed;
-  weighed.resize(static_cast<size_t>(width) * kLanes);
-  WeighRow(factors, row, width, weighed.data());
-  FilterAlongWeighedRow(filter, weighed.data(), width, pixels.any_masked, count, out);
-}
 
 }  // namespace
 
@@ -72,9 +51,8 @@ class RowFilter {
       const int row_count = std::min(kKnotRowsAtOnce, to_.height() - y_);
       const int end = y_ + row_count + after_;
       for (; next_ < std::min(complete_rows, end); ++next_)
-        FilterAlong(filter_, pixels_,
-                    corrector_ ? corrector_->Row(next_) : pixels_.radiance.row(next_), next_,
-                    to_.width(), Row(next_));
+        FilterAlongRow(filter_, corrector_ ? corrector_->Row(next_) : pixels_.radiance.row(next_),
+                       pixels_.radiance.width(), pixels_.any_masked, to_.width(), Row(next_));
       if (complete_rows < std::min(height, end)) return;
       for (int k = y_ - before_; k < end; ++k)
         rows_[static_cast<size_t>(k - y_ + before_)] = Row(k);

@@ -40,8 +40,6 @@ struct Prefilter {
   // The weights, times kOne, of the pixels at the distances 0, 1, 2 ... px on both sides of a knot;
   // 1/2, 3/2 ... px if is_even.
   std::array<int16_t, kMostWeights> weights = {kOne};
-  // True: pixels of a mosaic (LfPixels::recorded) are first multiplied by ShareFactor().
-  bool by_shares = false;
   // Strength of the correction that pixels made from a mosaic (LfPixels::recorded) get before they
   // are filtered: 0 (none) to kStrongestCorrection (mosaic_correction.h).
   int correction = 0;
@@ -59,30 +57,6 @@ Prefilter PrefilterFor(double width_px, PixelFootprint footprint);
 
 inline constexpr double kFinerAtMost = 1.25;
 
-// Return filters for pixels made from a mosaic and for elements wider than kFinerAtMost. Their
-// knots are midway between pixels: pixels with even and with odd x then have the same sum of
-// weights, and so do those with even and with odd y. At every knot, recorded and interpolated
-// values of a colour therefore have the same shares, and a constant picture stays what it is, apart
-// from rounding.
-//   PrefilterOfMosaic()  is like PrefilterFor()
-//   MeanOfMosaic()       is for values that are interpolated by cubics, which blur little. It has
-//                        two different weights and the variance that the area of an element has
-//                        more than that of an LF pixel; or, if pixels show points, the variance of
-//                        the mean of 2 x 2 rays through the element. Elements must be narrower
-//                        than 3 LF pixels
-Prefilter PrefilterOfMosaic(double width_px, PixelFootprint footprint);
-Prefilter MeanOfMosaic(double width_px, PixelFootprint footprint);
-
-// Returns the factor, times 256, of colour `channel` of pixel (x, y) of an LF image whose mosaic
-// had the pattern `recorded`. A recorded value has about eight times the factor of an interpolated
-// one. The mean factor of 2 x 2 pixels is 1.
-inline int32_t ShareFactor(BayerPattern recorded, int x, int y, int channel) {
-  if (recorded == BayerPattern::kNone) return 256;
-  const bool is_recorded = BayerChannel(recorded, x, y) == channel;
-  if (channel == 1) return is_recorded ? 455 : 57;
-  return is_recorded ? 745 : 93;
-}
-
 // Writes the filtered values to `out`, whose memory is reused: first along rows, rounded to
 // quarters, then along columns, rounded half up and clipped to 0..65535. Pixel (x, y) of the result
 // is the knot at the centre of pixel (x, y), or the one between (x, y) and (x + 1, y + 1) if
@@ -92,7 +66,7 @@ inline int32_t ShareFactor(BayerPattern recorded, int x, int y, int channel) {
 // the pixel at it is masked or, if filter.is_even, one of the two pixels beside it along the
 // filtered axis. Other pixels that are masked or not in `pixels` count as the pixel at the knot, or
 // as the mean of the two beside it. If `pixels` is a part of the LF image, values that need pixels
-// of the LF image beyond this part are wrong. Products with ShareFactor() are rounded half up.
+// of the LF image beyond this part are wrong.
 //   pixels  RGB; must not be *out. Opacities are left out
 void FilterPixels(const Prefilter& filter, const LfPixels& pixels, LfPixels* out);
 

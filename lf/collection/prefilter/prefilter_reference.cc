@@ -66,18 +66,14 @@ void FilterPixelsReference(const Prefilter& filter, const LfPixels& pixels, LfPi
   const auto row_there = [&](int x, int y) {
     return there(x, y) && (!filter.is_even || there(x + 1, y));
   };
-  const auto weighed = [&](int x, int y, int c) -> int64_t {
-    const int64_t v = corrects && there(x, y)
-                          ? CorrectedReference(filter.correction, pixels, x, y, c)
-                          : pixels.radiance.at(x, y, c);
-    if (!filter.by_shares) return v;
-    return Rounded(
-        v * ShareFactor(pixels.recorded, pixels.rect.x_begin + x, pixels.rect.y_begin + y, c), 8);
+  const auto corrected = [&](int x, int y, int c) -> int64_t {
+    return corrects && there(x, y) ? CorrectedReference(filter.correction, pixels, x, y, c)
+                                   : pixels.radiance.at(x, y, c);
   };
   const auto along_row = [&](int x, int y, int c) {
     return Rounded(Filtered(
                        filter, [&](int k) { return there(x + k, y); },
-                       [&](int k) { return weighed(x + k, y, c); }),
+                       [&](int k) { return corrected(x + k, y, c); }),
                    Prefilter::kBits - kPrefilterFraction);
   };
   for (int y = 0; y < out->rect.height(); ++y)

@@ -24,10 +24,6 @@ constexpr ptrdiff_t kLanes = LfPixels::kRgbLanes;
 constexpr int kRowShift = Prefilter::kBits - kPrefilterFraction;
 constexpr int kColumnShift = Prefilter::kBits + kPrefilterFraction;
 
-using Factors = std::array<int32_t, 2 * LfPixels::kRgbLanes>;
-constexpr int kFactorBits = 8;
-constexpr int32_t kHalfFactor = 1 << (kFactorBits - 1);
-
 #if HWY_TARGET == HWY_SCALAR
 
 // Returns the value of a knot in `lane`, times Prefilter::kOne; 0 if it is masked. at(k, lane) is
@@ -47,9 +43,8 @@ int64_t Filtered(const Prefilter& filter, const At& at, int64_t one, int lane) {
   return sum_of(lane) + missing * middle;
 }
 
-template <class Value>
-void FilterRow(const Prefilter& filter, const Value* row, int width, bool /*any_masked*/, int count,
-               int32_t* out) {
+void FilterAlongRow(const Prefilter& filter, const uint16_t* row, int width, bool /*any_masked*/,
+                    int count, int32_t* out) {
   for (int x = 0; x < count; ++x)
     for (int lane = 0; lane < kLanes; ++lane) {
       const auto at = [&](int k, int of_lane) -> int64_t {
@@ -58,12 +53,6 @@ void FilterRow(const Prefilter& filter, const Value* row, int width, bool /*any_
       out[x * kLanes + lane] = static_cast<int32_t>(
           (Filtered(filter, at, 1, lane) + (1 << (kRowShift - 1))) >> kRowShift);
     }
-}
-
-void WeighRow(const Factors& factors, const uint16_t* row, int width, int32_t* weighed) {
-  for (ptrdiff_t i = 0; i < width * kLanes; ++i)
-    weighed[i] =
-        (row[i] * factors[static_cast<size_t>(i % (2 * kLanes))] + kHalfFactor) >> kFactorBits;
 }
 
 void FilterAlongColumns(const Prefilter& filter, const int32_t* const* rows, bool /*any_missing*/,
@@ -163,31 +152,9 @@ template <class D>
 HWY_ATTR HWY_INLINE hn::Vec<D> LoadValues(D d, const uint16_t* values) {
   return hn::PromoteTo(d, hn::LoadU(hn::Rebind<uint16_t, D>(), values));
 }
-template <class D>
-HWY_ATTR HWY_INLINE hn::Vec<D> LoadValues(D d, const int32_t* values) {
-  return hn::LoadU(d, values);
-}
-
-HWY_ATTR void WeighRow(const Factors& factors, const uint16_t* HWY_RESTRICT row, int width,
-                       int32_t* HWY_RESTRICT weighed) {
-  const auto weigh = [&](auto d, ptrdiff_t i, size_t first_factor) HWY_ATTR {
-    const auto factor = hn::LoadU(d, factors.data() + first_factor);
-    const auto product = hn::Mul(LoadValues(d, row + i), factor);
-    hn::StoreU(hn::ShiftRight<kFactorBits>(hn::Add(product, hn::Set(d, kHalfFactor))), d,
-               weighed + i);
-  };
-  const hn::CappedTag<int32_t, 2 * kLanes> d;
-  const hn::Full128<int32_t> d_pixel;
-  const ptrdiff_t end = width * kLanes;
-  ptrdiff_t i = 0;
-  for (; i + 2 * kLanes <= end; i += 2 * kLanes)
-    for (size_t k = 0; k < factors.size(); k += hn::Lanes(d)) weigh(d, i + k, k);
-  if (i < end) weigh(d_pixel, i, 0);
-}
-
 // Computes knots [begin, end) of a row. All pixels within their reach must be in memory.
-template <class Form, bool kAnyMissing, class Value>
-HWY_ATTR HWY_INLINE void FilterInRow(const Prefilter& filter, const Value* HWY_RESTRICT row,
+template <class Form, bool kAnyMissing>
+HWY_ATTR HWY_INLINE void FilterInRow(const Prefilter& filter, const uint16_t* HWY_RESTRICT row,
                                      int begin, int end, int32_t* HWY_RESTRICT out) {
   ForEachVector<Form>(filter, begin, end, [&](auto d, const auto& weights, ptrdiff_t i) HWY_ATTR {
     const auto at = [&](int k) HWY_ATTR { return LoadValues(d, row + i + k * kLanes); };
@@ -198,12 +165,12 @@ HWY_ATTR HWY_INLINE void FilterInRow(const Prefilter& filter, const Value* HWY_R
 }
 
 // Computes knots [begin, end) of a row, some of whose pixels may be masked or missing.
-template <class Form, class Value>
-HWY_ATTR HWY_INLINE void FilterBorder(const Prefilter& filter, const Value* row, int width,
+template <class Form>
+HWY_ATTR HWY_INLINE void FilterBorder(const Prefilter& filter, const uint16_t* row, int width,
                                       int begin, int end, int32_t* HWY_RESTRICT out) {
   // A copy of the pixels within reach, with masked ones in place of those that do not exist.
   const int reach = filter.count, first = begin - reach, last = end + reach;
-  thread_local std::vector<Value> copy;
+  thread_local std::vector<uint16_t> copy;
   copy.assign(static_cast<size_t>(last - first) * kLanes, 0);
   const int from = std::max(first, 0), to = std::min(last, width);
   std::copy(row + from * kLanes, row + to * kLanes, copy.begin() + (from - first) * kLanes);
@@ -246,9 +213,8 @@ HWY_ATTR HWY_INLINE void FilterRowsInColumns(const Prefilter& filter, const int3
   });
 }
 
-template <class Value>
-HWY_ATTR void FilterRow(const Prefilter& original, const Value* row, int width, bool any_masked,
-                        int count, int32_t* out) {
+HWY_ATTR void FilterAlongRow(const Prefilter& original, const uint16_t* row, int width,
+                             bool any_masked, int count, int32_t* out) {
   const Prefilter filter = original;  // a copy: it cannot change while `out` is written
   WithForm(filter, [&](auto form) HWY_ATTR {
     using Form = decltype(form);
@@ -280,16 +246,6 @@ HWY_ATTR void FilterAlongColumns(const Prefilter& original, const int32_t* const
 
 #endif
 
-HWY_ATTR void FilterAlongRow(const Prefilter& filter, const uint16_t* row, int width,
-                             bool any_masked, int count, int32_t* out) {
-  FilterRow(filter, row, width, any_masked, count, out);
-}
-
-HWY_ATTR void FilterAlongWeighedRow(const Prefilter& filter, const int32_t* weighed, int width,
-                                    bool any_masked, int count, int32_t* out) {
-  FilterRow(filter, weighed, width, any_masked, count, out);
-}
-
 }  // namespace HWY_NAMESPACE
 }  // namespace lf
 HWY_AFTER_NAMESPACE();
@@ -297,21 +253,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace lf {
 HWY_EXPORT(FilterAlongRow);
-HWY_EXPORT(FilterAlongWeighedRow);
-HWY_EXPORT(WeighRow);
 HWY_EXPORT(FilterAlongColumns);
 
 void FilterAlongRow(const Prefilter& filter, const uint16_t* row, int width, bool any_masked,
                     int count, int32_t* out) {
   HWY_DYNAMIC_DISPATCH(FilterAlongRow)(filter, row, width, any_masked, count, out);
-}
-void WeighRow(const std::array<int32_t, 2 * LfPixels::kRgbLanes>& factors, const uint16_t* row,
-              int width, int32_t* weighed) {
-  HWY_DYNAMIC_DISPATCH(WeighRow)(factors, row, width, weighed);
-}
-void FilterAlongWeighedRow(const Prefilter& filter, const int32_t* weighed, int width,
-                           bool any_masked, int count, int32_t* out) {
-  HWY_DYNAMIC_DISPATCH(FilterAlongWeighedRow)(filter, weighed, width, any_masked, count, out);
 }
 void FilterAlongColumns(const Prefilter& filter, const int32_t* const* rows, bool any_missing,
                         int row_count, int count, uint16_t* out) {

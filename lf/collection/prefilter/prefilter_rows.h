@@ -2,7 +2,6 @@
 // The two loops of FilterPixels(). Internal to this folder.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "lf/collection/prefilter/prefilter.h"
@@ -20,14 +19,6 @@ inline constexpr int kPrefilterFraction = 2;
 //   count       number of knots
 void FilterAlongRow(const Prefilter& filter, const uint16_t* row, int width, bool any_masked,
                     int count, int32_t* out);
-
-// Multiplies the pixels of a row by factors in 1/256: `factors` holds those of the lanes of pixel
-// 0, which pixels 2, 4... have too, and those of pixel 1. FilterAlongWeighedRow() does with the
-// result what FilterAlongRow() does with pixels.
-void WeighRow(const std::array<int32_t, 2 * LfPixels::kRgbLanes>& factors, const uint16_t* row,
-              int width, int32_t* weighed);
-void FilterAlongWeighedRow(const Prefilter& filter, const int32_t* weighed, int width,
-                           bool any_masked, int count, int32_t* out);
 
 // Number of rows of knots that are best made by one call of FilterAlongColumns().
 inline constexpr int kKnotRowsAtOnce = 4;

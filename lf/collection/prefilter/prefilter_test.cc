@@ -18,11 +18,8 @@ namespace {
 std::vector<Prefilter> AllFilters() {
   std::vector<Prefilter> filters;
   for (const auto footprint : {PixelFootprint::kArea, PixelFootprint::kPoint})
-    for (double width = 1.3125; width <= kWidestElement_px; width += 0.0625) {
+    for (double width = 1.3125; width <= kWidestElement_px; width += 0.0625)
       filters.push_back(PrefilterFor(width, footprint));
-      filters.push_back(PrefilterOfMosaic(width, footprint));
-      if (width < 3) filters.push_back(MeanOfMosaic(width, footprint));
-    }
   return filters;
 }
 
@@ -93,37 +90,33 @@ void ExpectBitsOfReference(const std::string& target) {
       for (const PixelRect rect : {PixelRect{3, 4, 40, 25}, PixelRect{0, 0, 1, 1},
                                    PixelRect{0, 0, 2, 30}, PixelRect{5, 5, 70, 7}}) {
         LfPixels pixels = NoisePixels(rect, ++seed, masked);
-        pixels.recorded = static_cast<BayerPattern>(seed % 5);
-        for (const auto make : {PrefilterFor, PrefilterOfMosaic, MeanOfMosaic}) {
-          if (make == MeanOfMosaic && width >= 3) continue;
-          const auto footprint = seed % 2 == 0 ? PixelFootprint::kArea : PixelFootprint::kPoint;
-          const Prefilter filter = make(width, footprint);
-          LfPixels fast, literal;
-          FilterPixels(filter, pixels, &fast);
-          FilterPixelsReference(filter, pixels, &literal);
-          EXPECT_EQ(fast.radiance.pixels(), literal.radiance.pixels())
-              << target << " " << width << " " << masked;
-          EXPECT_EQ(fast.any_masked, pixels.any_masked);
-          EXPECT_EQ(fast.rect, literal.rect);
-          // The rows of the second copy become complete in groups of one to six.
-          LfPixels in_place = pixels, in_parts = pixels;
-          FilterInPlace(filter, &in_place);
-          std::fill(in_parts.radiance.pixels().begin(), in_parts.radiance.pixels().end(), 7);
-          InPlaceFilter in_parts_filter(filter, &in_parts);
-          for (int y = 0; y < pixels.radiance.height();) {
-            const int end = std::min(pixels.radiance.height(), y + 1 + (y + int(seed)) % 6);
-            std::copy(pixels.radiance.row(0) + y * pixels.radiance.width() * LfPixels::kRgbLanes,
-                      pixels.radiance.row(0) + end * pixels.radiance.width() * LfPixels::kRgbLanes,
-                      in_parts.radiance.row(y));
-            in_parts_filter.Advance(y = end);
-          }
-          EXPECT_EQ(in_parts.radiance.pixels(), literal.radiance.pixels())
-              << target << " " << width << " " << masked;
-          EXPECT_EQ(in_parts.rect, literal.rect);
-          EXPECT_EQ(in_place.radiance.pixels(), literal.radiance.pixels())
-              << target << " " << width << " " << masked;
-          EXPECT_EQ(in_place.rect, literal.rect);
+        const auto footprint = seed % 2 == 0 ? PixelFootprint::kArea : PixelFootprint::kPoint;
+        const Prefilter filter = PrefilterFor(width, footprint);
+        LfPixels fast, literal;
+        FilterPixels(filter, pixels, &fast);
+        FilterPixelsReference(filter, pixels, &literal);
+        EXPECT_EQ(fast.radiance.pixels(), literal.radiance.pixels())
+            << target << " " << width << " " << masked;
+        EXPECT_EQ(fast.any_masked, pixels.any_masked);
+        EXPECT_EQ(fast.rect, literal.rect);
+        // The rows of the second copy become complete in groups of one to six.
+        LfPixels in_place = pixels, in_parts = pixels;
+        FilterInPlace(filter, &in_place);
+        std::fill(in_parts.radiance.pixels().begin(), in_parts.radiance.pixels().end(), 7);
+        InPlaceFilter in_parts_filter(filter, &in_parts);
+        for (int y = 0; y < pixels.radiance.height();) {
+          const int end = std::min(pixels.radiance.height(), y + 1 + (y + int(seed)) % 6);
+          std::copy(pixels.radiance.row(0) + y * pixels.radiance.width() * LfPixels::kRgbLanes,
+                    pixels.radiance.row(0) + end * pixels.radiance.width() * LfPixels::kRgbLanes,
+                    in_parts.radiance.row(y));
+          in_parts_filter.Advance(y = end);
         }
+        EXPECT_EQ(in_parts.radiance.pixels(), literal.radiance.pixels())
+            << target << " " << width << " " << masked;
+        EXPECT_EQ(in_parts.rect, literal.rect);
+        EXPECT_EQ(in_place.radiance.pixels(), literal.radiance.pixels())
+            << target << " " << width << " " << masked;
+        EXPECT_EQ(in_place.rect, literal.rect);
       }
 }
 
@@ -135,30 +128,6 @@ TEST(FilterPixels, HasTheBitsOfTheReferenceWithAllInstructions) {
   }
   hwy::SetSupportedTargetsForTest(0);
   hwy::GetChosenTarget().DeInit();
-}
-
-// One of 2 x 2 pixels recorded red, and two recorded green.
-TEST(FilterPixels, RecordedColoursCountEightTimes) {
-  for (const BayerPattern pattern : {BayerPattern::kRggb, BayerPattern::kGbrg}) {
-    LfPixels pixels({3, 5, 33, 35}, BayerPattern::kNone);
-    pixels.recorded = pattern;
-    for (int y = 0; y < 30; ++y)
-      for (int x = 0; x < 30; ++x)
-        for (int c = 0; c < 3; ++c)
-          pixels.radiance.at(x, y, c) = BayerChannel(pattern, x + 3, y + 5) == c ? 9000 : 2000;
-    for (const auto footprint : {PixelFootprint::kArea, PixelFootprint::kPoint})
-      for (const Prefilter& filter :
-           {MeanOfMosaic(2, footprint), PrefilterOfMosaic(4.5, footprint)}) {
-        LfPixels filtered;
-        FilterPixels(filter, pixels, &filtered);
-        for (int y = filter.count; y < 29 - filter.count; ++y)
-          for (int x = filter.count; x < 29 - filter.count; ++x) {
-            ASSERT_NEAR(filtered.radiance.at(x, y, 0), (8 * 9000 + 3 * 2000) / 11, 5);
-            ASSERT_NEAR(filtered.radiance.at(x, y, 1), (8 * 9000 + 2000) / 9, 5);
-            ASSERT_NEAR(filtered.radiance.at(x, y, 2), (8 * 9000 + 3 * 2000) / 11, 5);
-          }
-      }
-  }
 }
 
 // Filters change neither: constant light keeps its value exactly, and so does a ramp, apart from

@@ -5,7 +5,7 @@
 #include <map>
 #include <mutex>
 #include <numbers>
-#include <tuple>
+#include <utility>
 
 #include "lf/collection/prefilter/prefilter.h"
 
@@ -66,13 +66,12 @@ Design Designed(double width_px, PixelFootprint footprint, bool is_even, int cou
   return design;
 }
 
-Prefilter Found(double width_px, PixelFootprint footprint, bool of_mosaic) {
+Prefilter Found(double width_px, PixelFootprint footprint) {
   const int beyond = static_cast<int>(std::ceil(width_px / 2));
   const Design odd = Designed(width_px, footprint, false, beyond + 2);
   const Design even = Designed(width_px, footprint, true, beyond + 2);
   Prefilter filter;
-  filter.by_shares = of_mosaic;
-  filter.is_even = of_mosaic || even.error < odd.error;
+  filter.is_even = even.error < odd.error;
   const Eigen::VectorXd& weights = filter.is_even ? even.weights : odd.weights;
   filter.count = static_cast<int>(weights.size());
   int sum = 0;
@@ -88,44 +87,17 @@ Prefilter Found(double width_px, PixelFootprint footprint, bool of_mosaic) {
   return filter;
 }
 
-// Returns the width, rounded to steps.
-int StepsOf(double width_px) {
-  return static_cast<int>(std::lround(std::min(width_px, kWidestElement_px) * kSteps));
-}
-
-// Returns Found() for the rounded width.
-Prefilter FoundOnce(double width_px, PixelFootprint footprint, bool of_mosaic) {
-  const int steps = width_px > kFinerAtMost ? StepsOf(width_px) : static_cast<int>(kSteps);
-  static std::mutex mutex;
-  static std::map<std::tuple<int, PixelFootprint, bool>, Prefilter> known;
-  const std::lock_guard lock(mutex);
-  const auto [at, is_new] = known.try_emplace({steps, footprint, of_mosaic});
-  if (is_new) at->second = Found(steps / kSteps, footprint, of_mosaic);
-  return at->second;
-}
-
 }  // namespace
 
 Prefilter PrefilterFor(double width_px, PixelFootprint footprint) {
-  return FoundOnce(width_px, footprint, false);
-}
-
-Prefilter PrefilterOfMosaic(double width_px, PixelFootprint footprint) {
-  return FoundOnce(width_px, footprint, true);
-}
-
-Prefilter MeanOfMosaic(double width_px, PixelFootprint footprint) {
-  const double width = StepsOf(width_px) / kSteps;
-  const double variance =
-      footprint == PixelFootprint::kArea ? (width * width - 1) / 12 : width * width / 16;
-  // Weights a, b at the distances 1/2 and 3/2 have the sum 2 (a + b) = 1 and the variance
-  // 2 (a / 4 + 9 b / 4) = 1 / 4 + 4 b.
-  const auto outer = static_cast<int16_t>(std::lround((variance - 0.25) / 4 * Prefilter::kOne));
-  Prefilter filter;
-  filter.by_shares = filter.is_even = true;
-  filter.count = 2;
-  filter.weights = {static_cast<int16_t>(Prefilter::kOne / 2 - outer), outer};
-  return filter;
+  const double limited_px = width_px > kFinerAtMost ? std::min(width_px, kWidestElement_px) : 1;
+  const int steps = static_cast<int>(std::lround(limited_px * kSteps));
+  static std::mutex mutex;
+  static std::map<std::pair<int, PixelFootprint>, Prefilter> known;
+  const std::lock_guard lock(mutex);
+  const auto [at, is_new] = known.try_emplace({steps, footprint});
+  if (is_new) at->second = Found(steps / kSteps, footprint);
+  return at->second;
 }
 
 }  // namespace lf

@@ -8,7 +8,7 @@
 namespace lf {
 
 FilmSettings LaterRender(FilmSettings film, const LightField& light_field) {
-  film.reading.filter = FilterOf(film.reading.filter, light_field.encoding, false);
+  film.reading.filter = FilterOf(film.reading.filter, light_field.encoding);
   // Rebinned rays alone are not weighted.
   if (film.mode == RenderMode::kRebin && film.lens_weights == LensWeights::kAuto)
     film.lens_weights = LensWeights::kNone;

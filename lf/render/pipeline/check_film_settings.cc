@@ -206,12 +206,6 @@ Result<void> CheckFilmSettings(const Package& package, const FilmSettings& optio
         "{stop_when} and {require} samples>=N count the rays of recorded LF images alone, but "
         "frames of a densified light field add the rays of virtual LF images to the same counts: "
         "use \"noise<=X\", or leave out {guard off}");
-  if (film.CountsRays() && film.reading.estimator == Estimator::kBilinear &&
-      film.reading.filter == PixelFilter::kMosaic)
-    return UsageError(
-        "{filter mosaic}: a ray counts up to 8 times, so that \"samples>=N\" ({stop_when}, "
-        "{require}) and {smooth_below} cannot count rays: leave these options out, use "
-        "\"noise<=X\", or use {filter bilinear}");
   return CheckLensWeights(package, film, frames);
 }
 

@@ -11,8 +11,7 @@ FilmSettings Resolved(FilmSettings settings, const Package& package) {
   if (settings.mode == RenderMode::kRebin ||
       (settings.lens_weights == LensWeights::kAuto && settings.CountsRays()))
     settings.lens_weights = LensWeights::kNone;
-  settings.reading.filter =
-      FilterOf(settings.reading.filter, package.light_field.encoding, settings.CountsRays());
+  settings.reading.filter = FilterOf(settings.reading.filter, package.light_field.encoding);
   settings.guard = settings.guard && package.whole_virtual_count > 0;
   if (!settings.max_image_count) settings.max_image_count = package.choices.max_image_count;
   return settings;

@@ -29,8 +29,6 @@ struct FilmSettings {
   RebinSettings rebin;
   // How rays are read from LF images: reading.estimator is kBilinear or kNearest; reading.filter, a
   // PixelFilter, is used by kBilinear alone.
-  // The filter must not be kMosaic if the estimator is kBilinear and CountsRays() is true, because
-  // the filter counts a ray up to 8 times.
   RayReading reading = Estimator::kBilinear;
   // How LF cameras are weighted by the part of the lens that each stands for: kAuto, kArea, kHat or
   // kNone (doc/lens-integral.md).

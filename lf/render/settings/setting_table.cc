@@ -58,15 +58,15 @@ void AddPictureRows(std::vector<Setting>& rows) {
            "exposures), otherwise prefiltered\n"
            "prefiltered: each LF image is first filtered for the size of elements, then "
            "interpolated linearly; sharper than bicubic and faster\n"
-           "mosaic: bicubic, or bilinear where an element is more than two LF pixels wide; "
-           "colours that the sensor recorded count 8 times as much as interpolated colours"},
+           "mosaic: for mosaics; like prefiltered, after a correction that depends on how many LF "
+           "images an element averages"},
       LF_MEMBER(reading.filter),
       Named({PixelFilter::kAuto, PixelFilter::kNearest, PixelFilter::kBilinear,
              PixelFilter::kBicubic, PixelFilter::kMosaic, PixelFilter::kPrefiltered})));
   rows.push_back(
       Choice({.key = "lf_pixels",
               .matters = IsBilinear,
-              .text = "What LF pixels show, for {filter prefiltered}\n"
+              .text = "What LF pixels show, for {filter prefiltered} and {filter mosaic}\n"
                       "areas: the mean light of their area, as in photographs\n"
                       "points: the light of their centre, as in renders without anti-aliasing\n"
                       "auto: as lf_pixels of the light field says, otherwise measured"},

@@ -45,9 +45,9 @@ inline constexpr int kDistortedPositionsVersion = 2;
 // change of the code that changes them within their tolerance raises it. Frames of the estimator
 // nearest do not depend on it.
 inline constexpr int kBilinearPositionsVersion = 2;
-// The version of the reading of mosaics by elements that are wider than LF pixels. Frames of RGB
-// light fields and those that the filter "mosaic" does not read do not depend on it.
-inline constexpr int kMosaicReadingVersion = 2;
+// The version of the reading of mosaics by the filter "mosaic". Frames of other filters do not
+// depend on it.
+inline constexpr int kMosaicReadingVersion = 3;
 
 // Returns the inputs that decide the rays of all frames: the versions of the ray model, the
 // settings with the role kRays, and the light field (number of LF images, and hashes of

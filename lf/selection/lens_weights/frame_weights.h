@@ -107,9 +107,9 @@ class FrameWeights {
   int rows() const { return rows_; }
 
   static constexpr double kMostSmallShares = 32;
-  // Largest sum of the weights of an element. The counts of a plate can hold this sum even if rays
-  // count up to 8 times (mosaics). The coarser steps of reduced weights do not matter if there are
-  // thousands of LF images in one lens.
+  // Largest sum of the weights of an element. The counts of a plate can hold eight times this sum.
+  // The coarser steps of reduced weights do not matter if there are thousands of LF images in one
+  // lens.
   static constexpr double kMostTogether = 2e6;
   // Whole cells are used for lenses through which at least kManyInOpening LF cameras are seen, if
   // the nodes would otherwise take more than kMostShares shares. A cell at the edge of the opening
