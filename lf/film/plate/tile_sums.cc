@@ -18,7 +18,7 @@ void AddTo(ElementSum* total, const ElementSum& sum) {
 
 void TileSums::Begin(PlateTile* tile, std::span<const PlateElement> watched, const Target& target) {
   LF_CHECK(mosaic_limit_ <= tile->max_reserve());
-  LF_CHECK(!has_rgb_ && !has_counted_ && !has_mosaic_);
+  LF_CHECK(!has_rgb_ && !has_mosaic_);
   LF_CHECK(target == Target() || watched.empty());
   LF_CHECK(target.first >= 0 && target.count >= 1);
   LF_CHECK(target.first + target.count <= SensorPlate::kChannels);
@@ -33,7 +33,6 @@ ElementSum TileSums::Added(size_t index, int channel) const {
   LF_DCHECK(index < watched_.size());
   ElementSum total = watched_flushed_[index * SensorPlate::kChannels + channel];
   AddTo(&total, PendingRgb(watched_[index], channel));
-  AddTo(&total, PendingCounted(watched_[index], channel));
   AddTo(&total, PendingMosaic(watched_[index], channel));
   return total;
 }
@@ -43,13 +42,6 @@ ElementSum TileSums::PendingRgb(const PlateElement& element, int channel) const 
   const auto row = static_cast<ptrdiff_t>(element.y - rect().y_begin) * stride();
   const Element& sums = elements_[row + element.x - rect().x_begin];
   return {sums.rgb_rays[channel], sums.rgb_rays[3]};
-}
-
-ElementSum TileSums::PendingCounted(const PlateElement& element, int channel) const {
-  if (!has_counted_) return {};
-  const auto row = static_cast<ptrdiff_t>(element.y - rect().y_begin) * stride();
-  const CountedElement& sums = counted_[row + element.x - rect().x_begin];
-  return {sums.rgb[channel], sums.counts[channel]};
 }
 
 // Reads the sums as FlushMosaic() does: each element has one word of red, one of blue and two of
@@ -84,15 +76,6 @@ void TileSums::MakeRgbRoom(uint32_t rays) {
   has_rgb_ = true;
 }
 
-void TileSums::MakeCountedRoom(uint32_t rays) {
-  LF_CHECK(rays <= ray_limit_ && HasThree());
-  FlushCounted();
-  const size_t count = static_cast<size_t>(stride()) * rect().height();
-  if (counted_.size() < count) counted_.resize(count);
-  counted_headroom_ = ray_limit_;
-  has_counted_ = true;
-}
-
 void TileSums::MakeMosaicRoom(uint32_t rays) {
   LF_CHECK(rays <= mosaic_limit_ && target_ == Target());
   FlushMosaic();
@@ -105,7 +88,6 @@ void TileSums::MakeMosaicRoom(uint32_t rays) {
 
 void TileSums::Flush() {
   FlushRgb();
-  FlushCounted();
   FlushMosaic();
 }
 
@@ -141,27 +123,6 @@ void TileSums::FlushRgbBy(const AddTo& add_to) {
       *element = Element{};
     }
   }
-}
-
-void TileSums::FlushCounted() {
-  if (!has_counted_) return;
-  KeepWatched([this](const PlateElement& element, int c) { return PendingCounted(element, c); });
-  tile_->Reserve(ray_limit_ - counted_headroom_);
-  for (int y = rect().y_begin; y < rect().y_end; ++y) {
-    CountedElement* element =
-        counted_.data() + static_cast<ptrdiff_t>(y - rect().y_begin) * stride();
-    uint64_t* word = tile_->row(y);
-    const ptrdiff_t ahead = tile_->row(std::min(y + 1, rect().y_end - 1)) - word;
-    for (int x = 0; x < rect().width(); ++x, ++element, word += tile_->channels()) {
-      Prefetch(word + ahead);
-      for (int c = 0; c < SensorPlate::kChannels; ++c)
-        word[target_.channel + c] +=
-            uint64_t{element->counts[c]} << SensorPlate::kSumBits | element->rgb[c];
-      *element = CountedElement{};
-    }
-  }
-  has_counted_ = false;
-  counted_headroom_ = 0;
 }
 
 void TileSums::FlushMosaic() {

@@ -22,13 +22,6 @@ class TileSums {
     uint32_t rgb_rays[4] = {};
   };
 
-  // Sums for rays that count differently in each colour: sums of 16-bit value times count, and sums
-  // of counts, R G B. The fourth numbers are never added to the plate.
-  struct alignas(16) CountedElement {
-    uint32_t rgb[4] = {};
-    uint32_t counts[4] = {};
-  };
-
   // For mosaics: packed words like the words of the plate. Along a scanline, green alternates with
   // another colour. If an LF pixel is as large as an element, the colours alternate in the same way
   // along a row of elements. A row of elements has one row of words for each alternation, so that a
@@ -72,8 +65,7 @@ class TileSums {
   //   watched  elements of the tile whose sums Added() returns; must outlive the last call of
   //            Added() or Flush() for this tile
   //   target   must have channels of the plate; unless they are the first three, `watched` must be
-  //            empty, and ReserveMosaic() must not be called; unless they are three, only
-  //            ReserveRgb() may be called
+  //            empty, and ReserveMosaic() must not be called
   void Begin(PlateTile* tile, std::span<const PlateElement> watched, const Target& target);
   void Begin(PlateTile* tile, std::span<const PlateElement> watched = {}) {
     Begin(tile, watched, Target());
@@ -93,14 +85,6 @@ class TileSums {
     return elements_.data();
   }
 
-  // As ReserveRgb(), but returns sums [height][stride()] for rays that count differently in each
-  // colour. `rays` is the most that may be added to any of CountedElement::counts.
-  CountedElement* ReserveCounted(uint32_t rays) {
-    if (rays > counted_headroom_) MakeCountedRoom(rays);
-    counted_headroom_ -= rays;
-    return counted_.data();
-  }
-
   // As ReserveRgb(), but returns packed words [height][kMosaicRows][stride()] for mosaics. Zeros
   // may be added to kMargin words in front of and behind the rows of the tile.
   uint64_t* ReserveMosaic(uint32_t rays) {
@@ -114,25 +98,22 @@ class TileSums {
   // Adds all sums to the plate and sets them to 0.
   void Flush();
 
-  // Returns the exact sum and count that were added to a watched element since Begin(), over all
-  // three layouts (RGB, counted and mosaic), however often the sums were flushed meanwhile.
+  // Returns the exact sum and count that were added to a watched element since Begin(), over both
+  // layouts (RGB and mosaic), however often the sums were flushed meanwhile.
   //   index  of the element among those given to Begin()
   ElementSum Added(size_t index, int channel) const;
 
  private:
   void MakeRgbRoom(uint32_t rays);
-  void MakeCountedRoom(uint32_t rays);
   void MakeMosaicRoom(uint32_t rays);
   void FlushRgb();
   bool HasThree() const { return target_.count == SensorPlate::kChannels; }
   template <class AddTo>
   void FlushRgbBy(const AddTo& add_to);
-  void FlushCounted();
   void FlushMosaic();
   // Return the sums that are not flushed yet, one function for each layout; 0 if the layout is not
   // in use.
   ElementSum PendingRgb(const PlateElement& element, int channel) const;
-  ElementSum PendingCounted(const PlateElement& element, int channel) const;
   ElementSum PendingMosaic(const PlateElement& element, int channel) const;
   template <class Pending>
   void KeepWatched(const Pending& pending);
@@ -142,15 +123,12 @@ class TileSums {
   PlateTile* tile_ = nullptr;
   Target target_;
   bool has_rgb_ = false;
-  bool has_counted_ = false;
   bool has_mosaic_ = false;
   // Numbers of rays that may still be added before a flush; 0 if the layout is not in use.
   uint32_t rgb_headroom_ = 0;
-  uint32_t counted_headroom_ = 0;
   uint32_t mosaic_headroom_ = 0;
-  // Sums of the three layouts. They are 0, except between the first Reserve*() and Flush().
+  // Sums of both layouts. They are 0, except between the first Reserve*() and Flush().
   LargeVector<Element> elements_;
-  LargeVector<CountedElement> counted_;
   LargeVector<uint64_t> words_;
   std::span<const PlateElement> watched_;
   std::vector<ElementSum> watched_flushed_;  // [watched][channel] sums flushed since Begin()
