@@ -162,10 +162,9 @@ lf::Result<lf::FilmSettings> FilmOf(const Arguments& a, const lf::CommonOptions&
   return film;
 }
 
-lf::NeedsOptions Needs(const lf::FilmSettings& film) {
+lf::NeedsOptions Needs(const lf::FilmSettings& film, const lf::LightField& light_field) {
   lf::NeedsOptions needs;
-  if (film.reading.estimator == lf::Estimator::kBilinear)
-    needs.select.reach = lf::PixelReach::kElement;
+  needs.select.reach = lf::WidestReachOf(film.reading.estimator, light_field.encoding);
   needs.select.max_angle_rad = film.max_angle_rad;
   needs.lens_weights = film.lens_weights;
   needs.max_image_count = film.max_image_count;
@@ -187,7 +186,7 @@ lf::Result<void> PrintText(const Arguments& a, const lf::CommonOptions& common) 
   LF_RETURN_IF_ERROR(lf::AddFocalSurfaces(a.path, light_field, {frames, &pool, nullptr}, &path));
   return lf::WriteSceneText(light_field, path, frames,
                             lf::RanksOf(a.page.film.order, light_field, common.seed),
-                            Needs(a.page.film), pool, lf::PrintReport);
+                            Needs(a.page.film, light_field), pool, lf::PrintReport);
 }
 
 // Warns on stderr and on the page if images and poses do not belong together. Runs while the page
@@ -230,11 +229,11 @@ lf::Result<void> Run(Arguments& a, const lf::CommonOptions& common) {
   a.page.light_field_options = a.light_field.Words();
   a.page.path = a.path;
   a.page.watch = a.watch;
-  a.page.needs = Needs(a.page.film);
   a.page.threads = common.threads;
   a.page.interrupted = &interrupted;
   LF_ASSIGN_OR_RETURN(a.page.live_memory_bytes, lf::ParseByteSize(a.live_memory, "--live-memory"));
   LF_ASSIGN_OR_RETURN(lf::LightField light_field, a.light_field.Open());
+  a.page.needs = Needs(a.page.film, light_field);
   // The page edits the text of the path, and opens it for itself.
   if (const lf::Result<std::vector<double>> times = lf::RecordingTimesOf(a.path);
       times && !times->empty())

@@ -16,7 +16,8 @@ constexpr double kPlateMarginPx = 1e-6;
 constexpr double kPixelMarginPx = 1e-6;    // rounding error of a vertex of the polygon
 constexpr int kNeighboursPx = 2;           // number of pixels read on each side of a ray
 constexpr double kBesideElement_px = 3.1;  // pixels beside an element that a prefilter reads
-constexpr double kZeroMargin = 1e-12;      // rounding error of a linear form, relative to its terms
+constexpr int kCorrectionPx = 2;       // pixels that the correction reads on each side of a pixel
+constexpr double kZeroMargin = 1e-12;  // rounding error of a linear form, relative to its terms
 
 // Returns how many pixels on each side of a ray are read for the ray.
 int NeighboursOf(PixelReach reach, const PinholeCamera& lf_camera, const FrameOutline& frame) {
@@ -25,7 +26,8 @@ int NeighboursOf(PixelReach reach, const PinholeCamera& lf_camera, const FrameOu
   LF_CHECK(frame.magnification);
   const double width_px =
       std::clamp(ElementWidth_px(lf_camera, *frame.magnification), 1., kWidestElement_px);
-  return static_cast<int>(std::ceil(width_px / 2 + kBesideElement_px));
+  const int of_prefilter = static_cast<int>(std::ceil(width_px / 2 + kBesideElement_px));
+  return reach == PixelReach::kCorrectedElement ? of_prefilter + kCorrectionPx : of_prefilter;
 }
 
 // Returns the largest difference, within the LF image, between a linear form of the pixel position
@@ -294,7 +296,7 @@ bool ImageOverlap::PlainlyMisses(const RenderCamera& render_camera) const {
 
 FrameOutline::FrameOutline(const RenderCamera& render_camera, PixelReach reach)
     : camera(render_camera) {
-  if (reach == PixelReach::kElement) magnification.emplace(render_camera);
+  if (DependsOnElement(reach)) magnification.emplace(render_camera);
   // A lens with very many blades is treated as a disk, whose 16-gon contains it.
   constexpr int kMostBlades = 64;
   if (camera.aperture.blades > kMostBlades) camera.aperture = {camera.aperture.radius_w, 0, 0};

@@ -22,7 +22,12 @@ enum class PixelReach {
   kNeighbours,  // 4 or 16 pixels around the ray, which may pass through any point
   kElement,     // the pixels that a prefilter reads (collection/prefilter/prefilter.h): in a square
                 // around the ray that is about six pixels wider than an element
+  kCorrectedElement,  // as kElement, and two more pixels on each side, which the correction of a
+                      // mosaic reads (Prefilter::correction)
 };
+
+// Returns true if the number of pixels depends on the size of elements.
+constexpr bool DependsOnElement(PixelReach reach) { return reach >= PixelReach::kElement; }
 
 // Returns the smallest pixel rectangle that contains the overlap, as the LF camera sees it, of the
 // lens (for a disk, its circumscribed 16-gon) with the region of the focus plane that the plate
@@ -56,7 +61,7 @@ struct FrameOutline {
   RenderCamera camera;
   std::vector<ApertureEdge> lens_edges;  // edges of a polygon that contains the lens
   double lens_inner_w = 0;  // radius of the largest circle about the lens centre within the lens
-  // Set only for PixelReach::kElement, whose reach depends on the magnification.
+  // Set only if DependsOnElement() is true.
   std::optional<MagnificationPoints> magnification;
 };
 

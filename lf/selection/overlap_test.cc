@@ -149,6 +149,20 @@ TEST(Overlap, CamerasBeyondTheRimPlainlyMiss) {
   }
 }
 
+TEST(Overlap, TheCorrectionOfMosaicsReadsTwoPixelsMore) {
+  testing::CameraPair pair = testing::ParallelPair(1, 0, 0.01, 0.05);
+  // A frame that shows the middle of the LF image.
+  pair.render_camera.pinhole.intrinsics.fx_px *= 3;
+  pair.render_camera.pinhole.intrinsics.fy_px *= 3;
+  const PixelRect element =
+      ContributingRect(pair.lf_camera, pair.render_camera, {}, PixelReach::kElement);
+  EXPECT_GT(element.x_begin, 2);
+  const PixelRect wider{element.x_begin - 2, element.y_begin - 2, element.x_end + 2,
+                        element.y_end + 2};
+  EXPECT_EQ(ContributingRect(pair.lf_camera, pair.render_camera, {}, PixelReach::kCorrectedElement),
+            wider);
+}
+
 TEST(Overlap, ALensBehindTheBackOfTheCameraStillCounts) {
   testing::CameraPair pair = testing::ParallelPair(0, 0, 0.01, 0.2);
   // The LF camera is 1 world unit in front of the lens and looks away from it.

@@ -18,9 +18,7 @@ FilmSettings LaterRender(FilmSettings film, const LightField& light_field) {
 NeedsOptions NeedsOfLaterRender(const FilmSettings& film, const LightField& light_field,
                                 const std::atomic<bool>* interrupted) {
   NeedsOptions needs;
-  // kElement is the largest reach.
-  needs.select.reach =
-      film.reading.estimator == Estimator::kBilinear ? PixelReach::kElement : PixelReach::kOwn;
+  needs.select.reach = WidestReachOf(film.reading.estimator, light_field.encoding);
   needs.select.max_angle_rad = film.max_angle_rad;
   needs.select.interrupted = interrupted;
   needs.lens_weights = film.lens_weights;

@@ -11,8 +11,7 @@ Result<ImageRanks> RanksOfFilm(ImageOrder order, uint64_t seed, const LightField
   NeedsOptions unlimited = needs;
   unlimited.max_image_count.reset();
   // The order must not depend on the filter, because packages can be rendered with any filter.
-  if (unlimited.select.reach == PixelReach::kElement)
-    unlimited.select.reach = PixelReach::kNeighbours;
+  if (DependsOnElement(unlimited.select.reach)) unlimited.select.reach = PixelReach::kNeighbours;
   std::vector<std::vector<ImageRays>> taken;
   for (uint32_t n = 1; n <= path.frame_count(); ++n) {
     taken.emplace_back();

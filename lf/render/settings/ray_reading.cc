@@ -11,7 +11,15 @@ const char* NameOf(Estimator estimator) {
 
 PixelReach ReachOf(const RayReading& reading) {
   if (reading.estimator == Estimator::kNearest) return PixelReach::kOwn;
+  if (reading.filter == PixelFilter::kMosaic) return PixelReach::kCorrectedElement;
   return reading.Prefilters() ? PixelReach::kElement : PixelReach::kNeighbours;
+}
+
+PixelReach WidestReachOf(Estimator estimator, const RadianceEncoding& encoding) {
+  RayReading reading = estimator;
+  reading.filter =
+      encoding.bayer != BayerPattern::kNone ? PixelFilter::kMosaic : PixelFilter::kPrefiltered;
+  return ReachOf(reading);
 }
 
 }  // namespace lf

@@ -31,9 +31,13 @@ struct RayReading : PixelReading {  // its member `filter` is used only by kBili
 };
 
 // Returns which pixels of an LF image decide the value of one ray: the pixel of the ray itself, its
-// neighbours, or the pixels that a prefilter reads. Selection must use this as
-// SelectOptions::reach.
+// neighbours, or the pixels that a prefilter or the correction before it reads. Selection must use
+// this as SelectOptions::reach.
 PixelReach ReachOf(const RayReading& reading);
+
+// Returns the largest ReachOf() that any filter has, for LF images of this encoding. Selections
+// that do not know the filter use it.
+PixelReach WidestReachOf(Estimator estimator, const RadianceEncoding& encoding);
 
 // kReference applies the ray model literally to every pixel, on one thread. It is about 50 times
 // slower than kFast; tests compare kFast with it.
