@@ -27,6 +27,7 @@
 #include "lf/distribute/compress/codec_words.h"
 #include "lf/distribute/compress/compress.h"
 #include "lf/distribute/compress/compress_report.h"
+#include "lf/distribute/compress/demosaicked_images.h"
 #include "lf/distribute/compress/image_use.h"
 #include "lf/import/formats/light_field_words.h"
 #include "lf/import/formats/open_light_field.h"
@@ -44,6 +45,7 @@ constexpr lf::HelpTexts kHelp = {
   lfcompressor capture/ -o capture.lfs --profile lossless     # lossless
   lfcompressor capture/ -o capture.lfs --target-psnr 42 --verify
   lfcompressor capture/ -o capture.lfs --by-resolution        # for a web server
+  lfcompressor raw/ -o rgb.lfs --demosaic joint               # mosaics with their neighbours
   lfcompressor packages/package-*.lfp -o film.lfs             # only the part that a film needs
   lfcompressor capture.lfs -o served.lfs --by-resolution      # copies what is encoded already
   lfrenderer capture.lfs path.yaml -o frames                  # a store is a LIGHTFIELD
@@ -146,6 +148,14 @@ void AddQuality(CLI::App& app, Arguments& a) {
       "pixels take 3 to 29 % fewer bytes, but decoding takes two to three times as long. Not for "
       "--profile "
       "thesis.");
+  quality.AddChoice(
+      "--demosaic", a.codec.demosaic, {"none", "joint"},
+      "Make RGB LF images of mosaics\n"
+      "none: the store has the mosaics, which are demosaicked whenever they are loaded\n"
+      "joint: missing colours are taken from what neighbouring LF images recorded, a pixel or "
+      "three "
+      "away. Frames are 2 to 10 dB nearer to those of RGB captures. It takes about 6 microseconds "
+      "for each pixel on one core. Not for packages, and not with --profile recorded or auto");
   quality.AddFlag("--reencode", a.codec.reencode,
                   "Encode all LF images, also those whose files are smaller\n"
                   "Encoded images take less time to load than JPEG files.");
@@ -312,10 +322,17 @@ lf::Result<Input> OpenInput(const Arguments& a, const std::atomic<bool>& interru
     LF_ASSIGN_OR_RETURN(lf::LightField light_field, argument.Open());
     Input input;
     LF_ASSIGN_OR_RETURN(input.source, lf::SourceOfAll(std::move(light_field)));
+    if (a.codec.demosaic == "joint") {
+      LF_ASSIGN_OR_RETURN(input.source, lf::DemosaickedJointly(std::move(input.source)));
+    }
     LF_RETURN_IF_ERROR(CheckCopies(a, input.source));
     input.next = NextOf(a, {});
     return input;
   }
+  if (a.codec.demosaic == "joint")
+    return lf::UsageError(
+        "--demosaic joint cannot be used with packages, whose frames are planned for mosaics: make "
+        "a store of the whole light field, and packages of that store");
   LF_RETURN_IF_ERROR(a.light_field.CheckWithPackages());
   std::optional<lf::LightField> light_field;
   std::optional<lf::LightFieldPlace> place;

@@ -254,6 +254,7 @@ class CodecWords:
     levels: int
     entropy: str
     reencode: bool
+    demosaic: str
     threshold: float
     target_psnr: float
     def __init__(self) -> None: ...

@@ -163,9 +163,9 @@ PROFILES = ("default", "lossless", "thesis", "recorded", "group", "group-lossles
 
 def compress(field: LightField, store: FilePath, *, profile: str = "default", threshold: Optional[float] = None,
              target_psnr: Optional[float] = None, levels: Optional[int] = None, quantizer: str = "8bit",
-             entropy: str = "auto", reencode: bool = False, shard_size: str = "", resume: bool = False,
-             overwrite: bool = False, verify: bool = False, strict: bool = False, threads: int = 0,
-             progress: Progress = None) -> _Facts:
+             entropy: str = "auto", reencode: bool = False, demosaic: str = "none", shard_size: str = "",
+             resume: bool = False, overwrite: bool = False, verify: bool = False, strict: bool = False,
+             threads: int = 0, progress: Progress = None) -> _Facts:
     """Compress the LF images into a packed store, as `lfcompressor` does.
 
     Parameters
@@ -194,6 +194,9 @@ def compress(field: LightField, store: FilePath, *, profile: str = "default", th
         "packed" for others.
     reencode : bool
         True: encode all LF images, also those whose files are smaller.
+    demosaic : {"none", "joint"}
+        "joint": make RGB LF images of mosaics. Missing colours are taken from what neighbouring LF images recorded.
+        Not with the profiles "recorded" and "auto".
     shard_size : str
         Such as "4G": split the store into files of about this size.
     resume, overwrite : bool
@@ -206,7 +209,8 @@ def compress(field: LightField, store: FilePath, *, profile: str = "default", th
         Number of threads; 0: one for each processor.
     progress : bool or callable, optional
         Called with the number of LF images that were encoded, and their total number; then, from 0 again, with those
-        that were verified. The profile "auto" first counts the LF images of its sample. True: a bar for each.
+        that were verified. The profile "auto" first counts the LF images of its sample, and the demosaicking "joint"
+        those that it has looked at. True: a bar for each.
 
     Returns
     -------
@@ -234,6 +238,7 @@ def compress(field: LightField, store: FilePath, *, profile: str = "default", th
     codec.quantizer = arguments.text("quantizer", quantizer)
     codec.entropy = arguments.choice("entropy", entropy, ("auto", "packed", "contexts"))
     codec.reencode = arguments.flag("reencode", reencode)
+    codec.demosaic = arguments.choice("demosaic", demosaic, ("none", "joint"))
     if threshold is not None and target_psnr is not None:
         raise UsageError("threshold and target_psnr cannot both be given")
     if threshold is not None:

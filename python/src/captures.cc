@@ -26,6 +26,7 @@
 #include "lf/densify/depth_cache.h"
 #include "lf/distribute/compress/codec_words.h"
 #include "lf/distribute/compress/compress_report.h"
+#include "lf/distribute/compress/demosaicked_images.h"
 #include "lf/distribute/preprocess/forecast_report.h"
 #include "lf/distribute/preprocess/known_depths.h"
 #include "lf/import/formats/open_light_field.h"
@@ -171,8 +172,9 @@ std::string CompressField(const OpenedField& field, const std::string& name,
         const auto progress = [&](const CompressProgress& now) {
           work.signals.SetProgress({now.done, now.total, static_cast<int>(now.phase)});
         };
-        const CompressReport report =
-            Take(Compress(Take(SourceOfAll(field.light_field)), options, pool, progress));
+        CompressSource source = Take(SourceOfAll(field.light_field));
+        if (codec.demosaic == "joint") source = Take(DemosaickedJointly(std::move(source)));
+        const CompressReport report = Take(Compress(source, options, pool, progress));
         return CompressJson(report, options);
       },
       &work.signals);
@@ -268,6 +270,7 @@ void AddCaptures(py::module_& module) {
       .def_readwrite("levels", &CodecWords::levels)
       .def_readwrite("entropy", &CodecWords::entropy)
       .def_readwrite("reencode", &CodecWords::reencode)
+      .def_readwrite("demosaic", &CodecWords::demosaic)
       .def_readwrite("threshold", &CodecWords::threshold)
       .def_readwrite("target_psnr", &CodecWords::target_psnr);
   py::class_<StoreWords>(module, "StoreWords")

@@ -116,6 +116,20 @@ def test_stores_of_groups_give_the_images_and_frames_of_the_files(field, path, t
     assert told[-1] == (49, 49) and (facts["sample"]["lf_images"],) * 2 in told
 
 
+def test_mosaics_are_demosaicked_together(field, run, tmp_path):
+    mosaics = lf.synth("still-life", tmp_path / "mosaics", count=25, size=(120, 80), spacing=0.003, jitter=0.4,
+                       bayer=True)
+    facts = lf.compress(mosaics, tmp_path / "a.lfs", profile="lossless", demosaic="joint")
+    assert facts["demosaic"]["kept_db"] > facts["demosaic"]["single_db"] + 2 and facts["demosaic"]["joint_share"] > 0.5
+    run("lfcompressor", tmp_path / "mosaics", "-o", tmp_path / "b.lfs", "--profile", "lossless", "--demosaic", "joint")
+    ours, theirs = lf.open(tmp_path / "a.lfs"), lf.open(tmp_path / "b.lfs")
+    assert all(np.array_equal(ours.image(i), theirs.image(i)) for i in (0, 12, 24))
+    with pytest.raises(lf.UsageError, match="needs mosaics"):
+        lf.compress(field, tmp_path / "c.lfs", demosaic="joint")
+    with pytest.raises(lf.UsageError, match="demosaic"):
+        lf.compress(mosaics, tmp_path / "c.lfs", demosaic="best")
+
+
 def test_broken_images_are_left_out_of_stores_with_a_warning(capture, tmp_path):
     folder = shutil.copytree(capture, tmp_path / "field")
     (folder / "images/0005.png").write_bytes(b"no picture")

@@ -35,6 +35,8 @@ UNTRIED = {
     "warn_of_other_film: this film with --mode collect": "names a cause, not a remedy",
     "warn_of_other_film: this film with --lens-weights none": "names a cause, not a remedy",
     "find_threshold: --target-psnr cannot be used with --profile lossless": BEFORE,
+    "joint_demosaicker: has virtual LF images, which": BEFORE,
+    "joint_demosaicker: has brackets (": CAPTURE + "mosaics that are brackets",
     "read_stanford: the grid (--grid) has": BEFORE,
     "check_film_settings: exposures of the same poses (lf_clipped)": CAPTURE + "brackets that were filmed",
     "check_film_settings: state its key time, or open one time": BEFORE,

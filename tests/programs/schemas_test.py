@@ -320,6 +320,10 @@ class SchemasTest(ProgramTestCase):
         self.prints("compress_report", *compress, "--overwrite", "--profile", "lossless")
         self.prints("compress_report", *compress, "--overwrite", "--profile", "auto")
         self.prints("compress_report", "lfcompressor", self.broken_field(), "-o", self.folder / "b.lfs", code=6)
+        self.succeeds(PROGRAMS / "lfsynth", "still-life", "-o", self.folder / "mosaics", "--bayer", "--count", 16,
+                      "--size", "120x80", "--spacing", 0.003, "-q")
+        self.prints("compress_report", "lfcompressor", self.folder / "mosaics", "-o", self.folder / "rgb.lfs",
+                    "--demosaic", "joint")
         self.store_of_packages()
         self.prints("compress_report", "lfcompressor", *(self.folder / "few").glob("*.lfp"), "--quality-by-use", "-o",
                     self.folder / "c.lfs")

@@ -39,7 +39,8 @@ std::vector<uint32_t> NearestOf(const LightField& light_field, std::span<const V
   for (uint32_t i = 0; i < centres.size(); ++i)
     if (i != id && light_field.Camera(LfImageId{i}).ForwardWorld().dot(forward) >= kLeastCosine)
       others.emplace_back((centres[i] - centres[id]).squaredNorm(), i);
-  const auto end = others.begin() + static_cast<ptrdiff_t>(std::min(others.size(), kNeighbours));
+  const auto end =
+      others.begin() + static_cast<ptrdiff_t>(std::min(others.size(), kJointNeighbours));
   std::partial_sort(others.begin(), end, others.end());
   std::vector<uint32_t> nearest;
   for (auto other = others.begin(); other != end; ++other) nearest.push_back(other->second);

@@ -18,7 +18,7 @@ constexpr double kMostError = 0.75;
 
 int BlockCount(int pixels) { return (pixels + kGuardBlock_px - 1) / kGuardBlock_px; }
 
-// Where a pixel lies between the middles of blocks along one axis.
+// The place of a pixel between the middles of blocks along one axis.
 struct Between {
   int before, after;  // blocks
   float share;        // of `after`

@@ -54,6 +54,22 @@ BayerPattern OneColumnFurther(BayerPattern pattern) {
   return pattern;
 }
 
+// Returns the light, before gain, that sensors can record at most: white, unless light above white
+// was recorded, as max_radiance tells.
+double ClippedLight(const LightField& light_field) {
+  const RadianceEncoding& encoding = light_field.encoding;
+  double most_gain = 1;
+  for (const LfCamera& camera : light_field.cameras)
+    for (const float gain : camera.gain.of_channels)
+      most_gain = std::max(most_gain, static_cast<double>(gain));
+  if (encoding.max_radiance <= most_gain || encoding.transfer != Transfer::kLinear ||
+      !encoding.white_level)
+    return 1;
+  const double largest = *encoding.white_level > 255 ? 65535 : 255;
+  return std::max(
+      1.0, (largest - encoding.black_level) / (*encoding.white_level - encoding.black_level));
+}
+
 }  // namespace
 
 BalancedRadiance::BalancedRadiance(const RadianceEncoding& encoding)
@@ -86,10 +102,10 @@ JointImage JointImageOf(const LightField& light_field, LfImageId id, const LfPix
   image.smooth = Smoothed(image.rgb);
   constexpr double kClippedShare = 0.98;
   const ChannelGains& gain = light_field.cameras[id.value].gain;
+  const double light = ClippedLight(light_field);
   for (size_t c = 0; c < image.clipped_from.size(); ++c)
-    image.clipped_from[c] =
-        static_cast<float>(kClippedShare * encoding.white_balance[c] *
-                           std::min(encoding.max_radiance, static_cast<double>(gain[c])));
+    image.clipped_from[c] = static_cast<float>(kClippedShare * encoding.white_balance[c] *
+                                               std::min(encoding.max_radiance, light * gain[c]));
   return image;
 }
 

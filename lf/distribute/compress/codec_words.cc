@@ -62,15 +62,24 @@ Result<void> SetCodec(const CodecWords& words, CompressOptions* options) {
         "{{quality_by_use}} cannot be used with {{profile {}}}, which has no threshold for each LF "
         "image: leave one of them out",
         words.profile));
+  const bool is_demosaicked = words.demosaic == "joint";
+  if (!is_demosaicked && words.demosaic != "none")
+    return UsageError(fmt::format("{{demosaic {}}}: expected none or joint", words.demosaic));
+  if (is_demosaicked && (is_recorded || words.profile == "auto"))
+    return UsageError(fmt::format(
+        "{{demosaic joint}} cannot be used with {{profile {}}}, which may keep image files as they "
+        "are: leave one of them out",
+        words.profile));
   if (is_recorded && words.reencode)
     return UsageError(
         "{reencode} cannot be used with {profile recorded}, which keeps image files: leave one of "
         "them out");
   // Files are decoded by libraries, whose results may change: no image is predicted from them.
   const bool is_in_groups = options->prediction == Prediction::kGroups;
-  options->files = is_recorded                                   ? KeepFiles::kAll
-                   : is_thesis || words.reencode || is_in_groups ? KeepFiles::kNone
-                                                                 : KeepFiles::kSmaller;
+  options->files = is_recorded ? KeepFiles::kAll
+                   : is_thesis || words.reencode || is_in_groups || is_demosaicked
+                       ? KeepFiles::kNone
+                       : KeepFiles::kSmaller;
   if (words.quantizer != "8bit") {
     if (!is_thesis)
       return UsageError(

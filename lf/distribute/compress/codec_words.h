@@ -20,6 +20,8 @@ struct CodecWords {
   double target_psnr = 0;        // in dB; 0: the threshold is not searched for
   bool reencode = false;         // true: no image file is kept
   bool quality_by_use = false;
+  // none, or joint: RGB LF images are made of mosaics (DemosaickedJointly()), which the caller does
+  std::string demosaic = "none";
 
   friend bool operator==(const CodecWords&, const CodecWords&) = default;
 };

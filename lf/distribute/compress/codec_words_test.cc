@@ -45,6 +45,11 @@ TEST(CodecWords, GroupsKeepNoFiles) {
   EXPECT_EQ(chosen.files, KeepFiles::kSmaller);
 }
 
+TEST(CodecWords, DemosaickedImagesKeepNoFiles) {
+  EXPECT_EQ(OptionsOf({.demosaic = "joint"}).files, KeepFiles::kNone);
+  EXPECT_EQ(OptionsOf({.profile = "lossless", .demosaic = "joint"}).files, KeepFiles::kNone);
+}
+
 TEST(CodecWords, AQualityIsSearchedForOnlyIfItIsGiven) {
   EXPECT_FALSE(OptionsOf({}).target_psnr_db);
   EXPECT_EQ(OptionsOf({.target_psnr = 42}).target_psnr_db, 42);
@@ -58,6 +63,8 @@ TEST(CodecWords, WordsThatDoNotExistOrContradictAreRefused) {
         CodecWords{.profile = "thesis", .entropy = "contexts"},
         CodecWords{.profile = "group-lossless", .threshold = 3},
         CodecWords{.profile = "auto", .quality_by_use = true},
+        CodecWords{.profile = "auto", .demosaic = "joint"},
+        CodecWords{.profile = "recorded", .demosaic = "joint"}, CodecWords{.demosaic = "best"},
         CodecWords{.profile = "auto", .reencode = true}}) {
     CompressOptions options;
     const Result<void> set = SetCodec(wrong, &options);

@@ -13,6 +13,7 @@
 #include "lf/core/check.h"
 #include "lf/core/log.h"
 #include "lf/distribute/compress/choose_prediction.h"
+#include "lf/distribute/compress/demosaicked_images.h"
 #include "lf/distribute/compress/find_threshold.h"
 #include "lf/distribute/compress/group_coder.h"
 #include "lf/distribute/compress/image_coder.h"
@@ -53,6 +54,7 @@ PackedStorePlan PlanOf(const CompressSource& source, const CompressOptions& opti
   plan.whole_ids = source.whole_ids;
   plan.rects = source.rects;
   plan.codec = NameOf(encoding, factors);
+  if (source.demosaicked) plan.codec = DemosaickedImages::Words() + ", " + plan.codec;
   plan.is_predicted = encoding.in_groups;
   plan.films = options.use != nullptr ? std::optional(options.use->films) : source.films;
   plan.display_levels =
@@ -108,6 +110,7 @@ class Compressor {
   Result<void> CheckTarget();
   Result<void> FindSkipped();
   Result<void> FindThresholdOf(Encoding* encoding);
+  Result<void> Prepare();
   Result<void> Choose();
   Result<void> Write(FileLock lock);
   std::vector<LfImageId> Ordered() const;
@@ -459,6 +462,20 @@ Result<void> Compressor::FindThresholdOf(Encoding* encoding) {
   return {};
 }
 
+// Prepares demosaicking, if the source needs it.
+Result<void> Compressor::Prepare() {
+  if (!source_.demosaicked || (report_.was_there && !options_.verify)) return {};
+  now_.phase = CompressPhase::kPreparing;
+  const Result<void> prepared =
+      source_.demosaicked->Prepare(pool_, options_.interrupted, [this](size_t done, size_t total) {
+        now_.done = done;
+        now_.total = total;
+        Show();
+      });
+  now_ = {};
+  return prepared;
+}
+
 // Chooses how LF images are encoded, as far as the options leave it open.
 Result<void> Compressor::Choose() {
   encoding_ = {options_.codec, options_.files, options_.prediction == Prediction::kGroups};
@@ -498,6 +515,8 @@ Result<CompressReport> Compressor::Run() {
   const double begin_s = Now();
   LF_RETURN_IF_ERROR(CheckSettings(options_.codec));
   LF_CHECK(!options_.by_resolution || options_.shard_bytes == 0);
+  LF_CHECK(!source_.demosaicked ||
+           (options_.files == KeepFiles::kNone && options_.prediction != Prediction::kChosen));
   if (source_.IsCopied()) {
     LF_ASSIGN_OR_RETURN(copied_, CopiedCodes::Open(source_.light_field));
     if (options_.by_resolution && copied_->ArePredicted())
@@ -515,6 +534,7 @@ Result<CompressReport> Compressor::Run() {
     LF_ASSIGN_OR_RETURN(held.lock, PackedStoreWriter::Lock(options_.store));
     LF_RETURN_IF_ERROR(CheckTarget());  // another program may have finished the store meanwhile
   }
+  LF_RETURN_IF_ERROR(Prepare());
   LF_RETURN_IF_ERROR(Choose());
   if (report_.was_there) {
     if (const Result<void> same = CheckStoreFacts(source_, Verification()); !same)
@@ -526,6 +546,8 @@ Result<CompressReport> Compressor::Run() {
   if (options_.verify) LF_RETURN_IF_ERROR(Verify());
   if (options_.use != nullptr && report_.coded_count + report_.skipped.size() == ids_.size())
     report_.frames = PredictFrames(*options_.use, errors_);
+  if (source_.demosaicked && !(report_.was_there && !options_.verify))
+    report_.demosaicked = source_.demosaicked->Errors();
   report_.store_bytes = StoreBytes(options_.store);
   report_.total_s = Now() - begin_s;
   return std::move(report_);

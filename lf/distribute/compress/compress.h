@@ -13,6 +13,7 @@
 
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
+#include "lf/densify/demosaic/joint_demosaicker.h"
 #include "lf/distribute/compress/choose_prediction.h"
 #include "lf/distribute/compress/code_quality.h"
 #include "lf/distribute/compress/compress_source.h"
@@ -36,7 +37,8 @@ struct CompressOptions {
   std::filesystem::path store;  // path of the packed store, such as STORE.lfs
   // The threshold is in grey steps (GreyStep() of code_quality.h) of the images' values.
   CodecSettings codec;
-  KeepFiles files = KeepFiles::kSmaller;  // must be kNone for CodecProfile::kThesis
+  // Must be kNone for CodecProfile::kThesis and if CompressSource::demosaicked is set.
+  KeepFiles files = KeepFiles::kSmaller;
   // Must be kNone for CodecProfile::kThesis and by_resolution. With kGroups, `files` must be kNone;
   // with kChosen, kSmaller.
   Prediction prediction = Prediction::kNone;
@@ -73,6 +75,7 @@ enum class CompressPhase : uint8_t {
   kChoosing,   // a sample of the LF images is encoded (Prediction::kChosen)
   kEncoding,   // the LF images are encoded or copied
   kVerifying,  // the LF images are read back (CompressOptions::verify)
+  kPreparing,  // mosaics are looked at before they are demosaicked (CompressSource::demosaicked)
 };
 
 struct CompressProgress {
@@ -116,6 +119,9 @@ struct CompressReport {
   // not encode all LF images, because the errors of the others are not known. An LF image that is
   // kept as its file, or could not be read, counts as exact.
   std::optional<FrameErrors> frames;
+  // Errors of demosaicking at tested pixels of the LF images that this call encoded or verified;
+  // unset unless CompressSource::demosaicked is set.
+  std::optional<GuardErrors> demosaicked;
   double encode_cpu_s = 0;
   double total_s = 0;
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -29,11 +30,23 @@ double MegabytesPerSecond(uint64_t bytes, double seconds) {
   return seconds > 0 ? static_cast<double>(bytes) / 1e6 / seconds : 0;
 }
 
+// Returns the PSNR of an error of `errors`, against display white; at most kMostTested_db.
+double TestedDb(const GuardErrors& errors, double squared) {
+  constexpr double kMostTested_db = 150;
+  const double mean = squared / static_cast<double>(errors.count);
+  return mean > 0 ? std::min(kMostTested_db, -10 * std::log10(mean)) : kMostTested_db;
+}
+
+double JointShare(const GuardErrors& errors) {
+  return Ratio(errors.joint_block_count, errors.block_count);
+}
+
 }  // namespace
 
 std::string ProgressDetail(const CompressProgress& now) {
   if (now.phase == CompressPhase::kChoosing) return "choosing";
   if (now.phase == CompressPhase::kVerifying) return "verifying";
+  if (now.phase == CompressPhase::kPreparing) return "looking at mosaics";
   return now.code_bytes == 0 ? std::string("coding")
                              : fmt::format("{:.1f} : 1", Ratio(now.pixel_bytes, now.code_bytes));
 }
@@ -94,10 +107,18 @@ std::string CompressText(const CompressReport& report, const CompressOptions& op
                         MegabytesPerSecond(report.pixel_bytes, report.encode_cpu_s),
                         ShortDuration(report.total_s));
   }
+  if (report.demosaicked && report.demosaicked->count > 0)
+    text += fmt::format(
+        "demosaic  {:.1f} dB at tested pixels, {:.1f} dB without neighbours; {:.0f} % of the "
+        "blocks "
+        "take colours from neighbours\n",
+        TestedDb(*report.demosaicked, report.demosaicked->kept),
+        TestedDb(*report.demosaicked, report.demosaicked->single),
+        100 * JointShare(*report.demosaicked));
   if (report.verified_count)
     text += fmt::format("verified  {} encoded images were read back: all are right\n",
                         *report.verified_count);
-  if (report.code_bytes > report.source_bytes && report.source_bytes > 0)
+  if (report.code_bytes > report.source_bytes && report.source_bytes > 0 && !report.demosaicked)
     text +=
         "note: the image files are smaller than their encoded images, because they are "
         "compressed already: use the files instead of the store\n";
@@ -147,6 +168,11 @@ std::string CompressJson(const CompressReport& report, const CompressOptions& op
     json["worst_psnr_db"] = decibels(report.worst_psnr_db);
     json["worst"] = report.worst_name;
   }
+  if (report.demosaicked && report.demosaicked->count > 0)
+    json["demosaic"] = {{"single_db", TestedDb(*report.demosaicked, report.demosaicked->single)},
+                        {"joint_db", TestedDb(*report.demosaicked, report.demosaicked->joint)},
+                        {"kept_db", TestedDb(*report.demosaicked, report.demosaicked->kept)},
+                        {"joint_share", JointShare(*report.demosaicked)}};
   if (report.frames)
     json["frames"] = {{"psnr_db", decibels(PsnrOf(report.frames->mean))},
                       {"worst_psnr_db", decibels(PsnrOf(report.frames->worst))},

@@ -39,6 +39,25 @@ TEST_F(CompressReportTest, TextStatesRatioQualityAndWhatIsSkipped) {
             std::string::npos);
 }
 
+TEST_F(CompressReportTest, DemosaickingIsTested) {
+  GuardErrors errors;
+  errors.single = 4;
+  errors.joint = 0.2;
+  errors.kept = 0.4;
+  errors.count = 4000;
+  errors.block_count = 50;
+  errors.joint_block_count = 49;
+  report_.demosaicked = errors;
+  report_.source_bytes = 10;
+  const std::string text = CompressText(report_, options_, "");
+  EXPECT_NE(text.find("demosaic  40.0 dB at tested pixels, 30.0 dB without neighbours; 98 % of"),
+            std::string::npos)
+      << text;
+  // The image files hold mosaics, which are no substitute for the store.
+  EXPECT_EQ(text.find("use the files"), std::string::npos);
+  EXPECT_NE(CompressJson(report_, options_).find("\"joint_share\": 0.98"), std::string::npos);
+}
+
 TEST_F(CompressReportTest, JsonKeepsNamesThatAreNoUtf8) {
   report_.skipped[0].name = "b\xff.png";
   report_.verified_count = 24;

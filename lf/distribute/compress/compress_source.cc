@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include "lf/distribute/compress/demosaicked_images.h"
 #include "lf/light_field/model/reduction.h"
 #include "lf/storage/load/measure_footprint.h"
 #include "lf/storage/load/open_store.h"
@@ -91,6 +92,7 @@ std::vector<LfImageId> CompressSource::CompressedIds() const {
 }
 
 Result<RecordedImage> ReadToCompress(const CompressSource& source, LfImageId id) {
+  if (source.demosaicked) return source.demosaicked->Read(id, source.rects[id.value]);
   const PixelRect rect = RectToRecord(source.light_field, id, source.rects[id.value]);
   return ReadRecordedImage(source.light_field, id, rect);
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -18,6 +19,8 @@
 
 namespace lf {
 
+class DemosaickedImages;
+
 struct CompressSource {
   // The whole light field. Its encoding states the footprint of LF pixels, because that is measured
   // from a few LF images, which a store may leave out or change.
@@ -32,14 +35,18 @@ struct CompressSource {
   std::vector<uint32_t> whole_ids = {};
   std::optional<StoreFilms> films = {};  // films that the packed store was encoded for
 
+  // Makes the pixels of `light_field` of mosaics (demosaicked_images.h); null: they are recorded.
+  std::shared_ptr<DemosaickedImages> demosaicked = {};
+
   // Returns true if the light field is a packed store, whose encoded images are copied.
-  bool IsCopied() const { return HoldsPackedStore(light_field); }
+  bool IsCopied() const { return !demosaicked && HoldsPackedStore(light_field); }
   // Returns the ids of the LF images that are not left out, ascending; there is at least one.
   std::vector<LfImageId> CompressedIds() const;
 };
 
 // Reads the pixels of an LF image that are compressed: those of its rectangle, and what a mosaic
-// needs around them. Errors as ReadRecordedImage().
+// needs around them. Errors as ReadRecordedImage() or, if source.demosaicked is set,
+// DemosaickedImages::Read().
 Result<RecordedImage> ReadToCompress(const CompressSource& source, LfImageId id);
 
 // Returns all LF images of the light field, with all their pixels; of a packed store, those that it
