@@ -185,8 +185,10 @@ Result<JointImageResult> JointDemosaicker::State::Demosaic(uint32_t id) const {
       nearest.empty() ? 0 : square_to(nearest[std::min<size_t>(3, nearest.size() - 1)]);
   for (const uint32_t other : nearest) {
     LF_ASSIGN_OR_RETURN(auto loaded, images->Get(LfImageId{other}));
+    const PixelPlaces places(image->camera, loaded->camera);
+    const float middle = depths.at(image->width() / 2, image->height() / 2);
     neighbours.push_back(
-        {loaded.get(), PixelPlaces(image->camera, loaded->camera),
+        {loaded.get(), places, places.OffsetsIn(ideal, image->width(), image->height(), middle),
          unit > 0 ? static_cast<float>(1 / (1 + kFar * square_to(other) / unit)) : 1.0F,
          ShiftPerInverseDepth(image->working.camera, loaded->working.camera)});
     others.push_back(std::move(loaded));

@@ -276,8 +276,10 @@ void TileMerger::AddSamples(const JointNeighbour& neighbour, float agreement, fl
             middle_y = static_cast<int>(place_y + 0.5F);
   for (int y = middle_y - 1; y <= middle_y + 1; ++y)
     for (int x = middle_x - 1; x <= middle_x + 1; ++x) {
-      const float offset_x = static_cast<float>(x) - place_x,
-                  offset_y = static_cast<float>(y) - place_y;
+      const float from_x = static_cast<float>(x) - place_x,
+                  from_y = static_cast<float>(y) - place_y;
+      const float offset_x = neighbour.offsets.X(from_x, from_y),
+                  offset_y = neighbour.offsets.Y(from_x, from_y);
       const float square = offset_x * offset_x + offset_y * offset_y;
       if (square >= kReach * kReach) continue;
       const int colour = other.ColourAt(x, y);

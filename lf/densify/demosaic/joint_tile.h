@@ -35,8 +35,9 @@ namespace lf {
 struct JointNeighbour {
   const JointImage* image = nullptr;
   PixelPlaces places;
-  float nearness = 1;   // factor of the weights of its samples
-  double shift_px = 0;  // ShiftPerInverseDepth()
+  PixelPlaces::Offsets offsets;  // OffsetsIn() the target
+  float nearness = 1;            // factor of the weights of its samples
+  double shift_px = 0;           // ShiftPerInverseDepth()
 };
 
 struct JointTarget {

@@ -23,9 +23,7 @@ class Merging {
         is_tested(TestedOnceInFour()),
         ideal_(images[0].camera),
         depths_(kWhole.width(), kWhole.height(), 1, static_cast<float>(1 / kDepth)) {
-    for (size_t i = 1; i < images.size(); ++i)
-      neighbours_.push_back({&images[i], PixelPlaces(images[0].camera, images[i].camera), 1.0F,
-                             ShiftPerInverseDepth(images[0].camera, images[i].camera)});
+    for (size_t i = 1; i < images.size(); ++i) neighbours_.push_back(NeighbourOf(images[i]));
   }
 
   JointTile Merge(const PixelRect& rect = kWhole) const {
@@ -40,6 +38,12 @@ class Merging {
   const JointImage& MakeImages(const DrawnMosaics& drawn) {
     for (uint32_t i = 0; i < drawn.mosaics.size(); ++i) images.push_back(drawn.ImageOf(i));
     return images[0];
+  }
+  JointNeighbour NeighbourOf(const JointImage& image) const {
+    const PixelPlaces places(images[0].camera, image.camera);
+    return {&image, places,
+            places.OffsetsIn(ideal_, kWhole.width(), kWhole.height(), depths_.at(0, 0)), 1.0F,
+            ShiftPerInverseDepth(images[0].camera, image.camera)};
   }
   static Image<uint8_t> TestedOnceInFour() {
     Image<uint8_t> result(kWhole.width(), kWhole.height());
@@ -65,6 +69,20 @@ TEST(JointTile, NeighboursThatRecordedTheMissingColoursRestoreThem) {
     const double joint = drawn.ErrorOf(merging.Merge().rgb, 0);
     EXPECT_LT(joint, single / 6);
   }
+}
+
+TEST(JointTile, NeighboursMayBeRolled) {
+  DrawnMosaics even, rolled;
+  even.AddGrid({{kDepth}});
+  rolled.Add(CameraAt(0, 0, kWhole.width(), kWhole.height()), {{kDepth}});
+  for (size_t i = 1; i < even.field.size(); ++i) {
+    PinholeCamera camera = even.field.Camera(LfImageId{static_cast<uint32_t>(i)});
+    const Mat3 roll = Eigen::AngleAxisd(i % 2 == 0 ? 0.6 : -0.6, Vec3::UnitZ()).matrix();
+    camera.cam_from_world = RigidTransform{roll, Vec3::Zero()} * camera.cam_from_world;
+    rolled.Add(camera, {{kDepth}});
+  }
+  const Merging one(even), other(rolled);
+  EXPECT_LT(rolled.ErrorOf(other.Merge().rgb, 0), 1.3 * even.ErrorOf(one.Merge().rgb, 0));
 }
 
 TEST(JointTile, RecordedValuesAreKept) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lf/densify/demosaic/pixel_places.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "lf/camera/ideal_pixels.h"
@@ -38,6 +39,27 @@ PixelPlaces::Place PixelPlaces::At(float ideal_x, float ideal_y, float inverse_d
   return {static_cast<float>(to_.fx_px * distorted->x() + to_.skew_px * distorted->y() + to_.cx_px -
                              0.5),
           static_cast<float>(to_.fy_px * distorted->y() + to_.cy_px - 0.5)};
+}
+
+PixelPlaces::Offsets PixelPlaces::OffsetsIn(const IdealPositions& of_from, int width_px,
+                                            int height_px, float inverse_depth) const {
+  const int step = std::min({8, width_px / 4, height_px / 4});
+  const int x = width_px / 2, y = height_px / 2;
+  const auto place_of = [&](int column, int row) {
+    const Vec2 ideal = of_from.At(column, row);
+    const Place place =
+        At(static_cast<float>(ideal.x()), static_cast<float>(ideal.y()), inverse_depth);
+    return Vec2(place.x, place.y);
+  };
+  const Vec2 across = place_of(x + step, y) - place_of(x - step, y);
+  const Vec2 down = place_of(x, y + step) - place_of(x, y - step);
+  const double determinant = Cross(across, down), length = 2.0 * step;
+  // A part of the square of `length`, below which the image of `to` is useless.
+  if (!(std::abs(determinant) > 0.01 * length * length)) return {};
+  return {{static_cast<float>(length * down.y() / determinant),
+           static_cast<float>(-length * down.x() / determinant),
+           static_cast<float>(-length * across.y() / determinant),
+           static_cast<float>(length * across.x() / determinant)}};
 }
 
 }  // namespace lf

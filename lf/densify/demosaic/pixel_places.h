@@ -2,8 +2,8 @@
 // Finds what a pixel of one LF image shows in another one, with the distortion of both lenses.
 #pragma once
 
+#include <array>
 #include <optional>
-#include <vector>
 
 #include "lf/camera/distortion.h"
 #include "lf/camera/pinhole.h"
@@ -39,6 +39,17 @@ class PixelPlaces {
   //   ideal_x, ideal_y  IdealPositions::At() of a pixel of `from`
   //   inverse_depth           along the optical axis of `from`
   Place At(float ideal_x, float ideal_y, float inverse_depth) const;
+
+  // A linear map of small offsets from places to offsets in the image of `from`, of points at one
+  // inverse depth around its middle. It is that of the whole image: LF images may be rolled and of
+  // different scales, but are hardly warped otherwise.
+  struct Offsets {
+    std::array<float, 4> m = {1, 0, 0, 1};  // row by row
+    float X(float x, float y) const { return m[0] * x + m[1] * y; }
+    float Y(float x, float y) const { return m[2] * x + m[3] * y; }
+  };
+  Offsets OffsetsIn(const IdealPositions& of_from, int width_px, int height_px,
+                    float inverse_depth) const;
 
  private:
   PairMap map_;                            // between the cameras without distortion

@@ -49,6 +49,20 @@ TEST(PixelPlaces, APointIsFoundWhereTheOtherCameraSeesIt) {
     }
 }
 
+TEST(PixelPlaces, OffsetsUndoRollAndScale) {
+  const PinholeCamera from = CameraAt(0, 0);
+  PinholeCamera to = CameraAt(0.1, 0.2);
+  to.intrinsics.fx_px *= 2;
+  to.intrinsics.fy_px *= 2;
+  const Mat3 roll = Eigen::AngleAxisd(0.5, Vec3::UnitZ()).matrix();
+  to.cam_from_world = RigidTransform{roll, Vec3::Zero()} * to.cam_from_world;
+  const PixelPlaces places(from, to);
+  const PixelPlaces::Offsets offsets = places.OffsetsIn(IdealPositions(from), 96, 64, 0.5F);
+  const PixelPlaces::Place at = places.At(40, 30, 0.5F), beside = places.At(41, 29.5F, 0.5F);
+  EXPECT_NEAR(offsets.X(beside.x - at.x, beside.y - at.y), 1, 1e-3);
+  EXPECT_NEAR(offsets.Y(beside.x - at.x, beside.y - at.y), -0.5, 1e-3);
+}
+
 TEST(PixelPlaces, ACameraThatLooksTheOtherWayHasNoPlace) {
   const PinholeCamera from = CameraAt(0, 0);
   PinholeCamera to = from;
