@@ -43,6 +43,17 @@ Image<float> Smoothed(const Image<float>& rgb) {
   return result;
 }
 
+// Returns the mean of the values that are not masked.
+float MeanOf(const Image<float>& smooth) {
+  double sum = 0, count = 0;
+  for (const float value : smooth.pixels()) {
+    if (std::isnan(value)) continue;
+    sum += value;
+    ++count;
+  }
+  return count > 0 ? static_cast<float>(sum / count) : 0;
+}
+
 // Returns the pattern of the same sensor if its pixels are counted from the second column on.
 BayerPattern OneColumnFurther(BayerPattern pattern) {
   for (const BayerPattern other :
@@ -100,6 +111,7 @@ JointImage JointImageOf(const LightField& light_field, LfImageId id, const LfPix
   image.working.light = {};
   image.rgb = BalancedRgb(rgb, balanced);
   image.smooth = Smoothed(image.rgb);
+  image.mean = MeanOf(image.smooth);
   constexpr double kClippedShare = 0.98;
   const ChannelGains& gain = light_field.cameras[id.value].gain;
   const double light = ClippedLight(light_field);

@@ -24,6 +24,7 @@ struct JointImage {
   // `rgb` filtered by [1 2 1] / 4 in both directions, in which little of the mosaic's pattern is
   // left. NaN if a pixel that takes part is masked.
   Image<float> smooth;
+  float mean = 0;  // mean of `smooth`
   // R, G, B from which recorded values may be clipped. Above this, only LF images with as much room
   // can tell more.
   std::array<float, 3> clipped_from = {};

@@ -23,7 +23,9 @@ constexpr float kPrior = 0.05F;
 constexpr float kLeastWeight = 0.02F;
 // Differences that are expected between LF images: of errors of demosaicking as a share of the
 // contrast, of noise, and of exposure as a share of the light.
-constexpr float kContrastShare = 0.6F, kNoise = 0.015F, kLightShare = 0.02F;
+constexpr float kContrastShare = 0.6F, kMostNoise = 0.015F, kLightShare = 0.02F;
+// Noise as a share of the mean of a dark LF image, and its least value.
+constexpr float kNoiseShare = 0.15F, kLeastNoise = 1e-4F;
 constexpr float kOutlierShare = 1.5F;  // s as a share of the contrast
 // Weight of the depth as it was found, per square of shift in pixels, and the largest correction.
 constexpr float kDepthWeight = 10, kMostMove_px = 0.5F;
@@ -171,12 +173,13 @@ void TileMerger::MeasureContrast() {
     for (size_t i = 0; i < count_; ++i)
       contrast_[i] += std::max(0.0F, square[i] - mean[i] * mean[i]) * (1.0F / JointImage::kColours);
   }
+  const float noise = std::clamp(kNoiseShare * image_.mean, kLeastNoise, kMostNoise);
   for (int y = 0; y < height_; ++y)
     for (int x = 0; x < width_; ++x) {
       const float* const light = Smooth(x, y);
       const float sum = light[0] + light[1] + light[2];
       const float deviation =
-          kNoise + kLightShare / JointImage::kColours * (sum > 0 ? sum : 0);  // NaN becomes 0
+          noise + kLightShare / JointImage::kColours * (sum > 0 ? sum : 0);  // NaN becomes 0
       noise_[Index(x, y)] = deviation * deviation;
     }
 }

@@ -71,6 +71,25 @@ TEST(JointTile, NeighboursThatRecordedTheMissingColoursRestoreThem) {
   }
 }
 
+TEST(JointTile, DarkMosaicsDisagreeAsBrightOnesDo) {
+  DrawnMosaics bright, dark;
+  // The depths of the far wall are wrong, so that its neighbours must not count.
+  const std::vector<Wall> walls = {{4, INFINITY, 2}, {kDepth, 0}};
+  bright.AddGrid(walls);
+  dark.AddGrid(walls);
+  constexpr double kShare = 1.0 / 30;
+  const auto darken = [&](double value) {
+    return DrawnMosaics::kNoLight + kShare * (value - DrawnMosaics::kNoLight);
+  };
+  for (LfPixels& mosaic : dark.mosaics)
+    for (uint16_t& value : mosaic.radiance.pixels())
+      value = static_cast<uint16_t>(std::lround(darken(value)));
+  for (Image<float>& rgb : dark.rgb)
+    for (float& value : rgb.pixels()) value *= static_cast<float>(kShare);
+  const double error = bright.ErrorOf(Merging(bright).Merge().rgb, 0);
+  EXPECT_LT(dark.ErrorOf(Merging(dark).Merge().rgb, 0), 1.6 * kShare * kShare * error);
+}
+
 TEST(JointTile, NeighboursMayBeRolled) {
   DrawnMosaics even, rolled;
   even.AddGrid({{kDepth}});
