@@ -10,7 +10,8 @@
 //   1. Green at a site of R or B. The neighbour at distance 1 to the west gives the estimate
 //      w1 + (c - w2) / 2 and the gradient |w1 - e1| + 0.01 + |c - w2| + |w1 - w3|; c is the root at
 //      the site, w and e are roots to the west and east. The other three directions give estimates
-//      in the same way. Green is their mean, weighted by 1 / gradient.
+//      in the same way. Green is their mean, weighted by 1 / gradient, and limited to the range
+//      of the four neighbours, so that it does not overshoot beside lights.
 //   2. Detail gains, at each site of C = R or B: how much of the detail of green C shows. It is
 //      (sum dC dG + 0.001) / (sum dG^2 + 0.001), at least 0 and at most 2. The sums run over 5 x 5
 //      sites of C and the differences d to the next site of C to the right and to the next below.

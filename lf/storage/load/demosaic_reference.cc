@@ -141,7 +141,9 @@ class ReferencePicture {
       estimates[i] = {root(1) + detail / 2,
                       slope + std::fabs(detail) + std::fabs(root(1) - root(3))};
     }
-    return MeanOfEstimates(estimates, 1);
+    const auto [least, most] =
+        std::minmax({roots_(x - 1, y), roots_(x + 1, y), roots_(x, y - 1), roots_(x, y + 1)});
+    return std::clamp(MeanOfEstimates(estimates, 1), least, most);
   }
 
   // Returns the pixel of the square of (x, y) that recorded a channel, R or B.

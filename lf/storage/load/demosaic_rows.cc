@@ -65,11 +65,14 @@ HWY_ATTR void GreenRow(const CrossRows& cross, int count, float* HWY_RESTRICT gr
     const float across = std::fabs(w1[k] - e1[k]) + kLeastGreenGradient;
     const float along = std::fabs(n1[k] - s1[k]) + kLeastGreenGradient;
     const float dw = c[k] - w2[k], de = c[k] - e2[k], dn = c[k] - n2[k], ds = c[k] - s2[k];
-    green[k] = MeanOf(w1[k] + dw * 0.5f, e1[k] + de * 0.5f, n1[k] + dn * 0.5f, s1[k] + ds * 0.5f,
-                      across + std::fabs(dw) + std::fabs(w1[k] - w3[k]),
-                      across + std::fabs(de) + std::fabs(e1[k] - e3[k]),
-                      along + std::fabs(dn) + std::fabs(n1[k] - n3[k]),
-                      along + std::fabs(ds) + std::fabs(s1[k] - s3[k]), 1);
+    const float mean = MeanOf(w1[k] + dw * 0.5f, e1[k] + de * 0.5f, n1[k] + dn * 0.5f,
+                              s1[k] + ds * 0.5f, across + std::fabs(dw) + std::fabs(w1[k] - w3[k]),
+                              across + std::fabs(de) + std::fabs(e1[k] - e3[k]),
+                              along + std::fabs(dn) + std::fabs(n1[k] - n3[k]),
+                              along + std::fabs(ds) + std::fabs(s1[k] - s3[k]), 1);
+    const float least = std::min(std::min(w1[k], e1[k]), std::min(n1[k], s1[k]));
+    const float most = std::max(std::max(w1[k], e1[k]), std::max(n1[k], s1[k]));
+    green[k] = std::min(most, std::max(least, mean));
   }
 }
 
