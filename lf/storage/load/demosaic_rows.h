@@ -39,8 +39,8 @@ void DetailRow(const std::array<const float*, 2>& colour, const std::array<const
 void GainRow(const std::array<const float*, 5>& products,
              const std::array<const float*, 5>& squares, int count, float* sums, float* gain);
 
-// Roots of a colour at four neighbours and green there. NeighbourRows 0 and 1 lie opposite to each
-// other, 2 and 3 do too.
+// Roots of a colour at four neighbours and green there. Neighbours 0 and 1 lie opposite to each
+// other, and so do 2 and 3.
 struct NeighbourRows {
   std::array<const float*, 4> colour, green;
 };
