@@ -45,7 +45,7 @@ constexpr lf::HelpTexts kHelp = {
   lfcompressor capture/ -o capture.lfs --profile lossless     # lossless
   lfcompressor capture/ -o capture.lfs --target-psnr 42 --verify
   lfcompressor capture/ -o capture.lfs --by-resolution        # for a web server
-  lfcompressor raw/ -o rgb.lfs --demosaic joint               # mosaics with their neighbours
+  lfcompressor mosaic/ -o rgb.lfs --demosaic joint            # mosaics with their neighbours
   lfcompressor packages/package-*.lfp -o film.lfs             # only the part that a film needs
   lfcompressor capture.lfs -o served.lfs --by-resolution      # copies what is encoded already
   lfrenderer capture.lfs path.yaml -o frames                  # a store is a LIGHTFIELD
@@ -154,7 +154,7 @@ void AddQuality(CLI::App& app, Arguments& a) {
       "none: the store has the mosaics, which are demosaicked whenever they are loaded\n"
       "joint: missing colours are taken from what neighbouring LF images recorded, a pixel or "
       "three "
-      "away. Frames are 2 to 10 dB nearer to those of RGB captures. It takes about 6 microseconds "
+      "away. Frames are 2 to 10 dB nearer to those of RGB captures. It takes about 8 microseconds "
       "for each pixel on one core. Not for packages, and not with --profile recorded or auto");
   quality.AddFlag("--reencode", a.codec.reencode,
                   "Encode all LF images, also those whose files are smaller\n"

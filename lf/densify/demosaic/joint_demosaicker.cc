@@ -14,6 +14,7 @@
 #include "lf/core/hash.h"
 #include "lf/densify/camera_chart.h"
 #include "lf/densify/demosaic/joint_images.h"
+#include "lf/densify/demosaic/joint_neighbours.h"
 #include "lf/densify/demosaic/joint_tile.h"
 #include "lf/densify/demosaic/pixel_places.h"
 #include "lf/densify/densify_plan.h"
@@ -29,23 +30,6 @@ namespace {
 constexpr int kTile_px = 256;
 static_assert(kTile_px % kGuardBlock_px == 0);
 constexpr uint32_t kLeftOut = std::numeric_limits<uint32_t>::max();
-
-// Returns the LF cameras nearest to one, the nearest first, that look in about the same direction.
-std::vector<uint32_t> NearestOf(const LightField& light_field, std::span<const Vec3> centres,
-                                uint32_t id) {
-  constexpr double kLeastCosine = 0.87;  // 30 degrees
-  const Vec3 forward = light_field.Camera(LfImageId{id}).ForwardWorld();
-  std::vector<std::pair<double, uint32_t>> others;
-  for (uint32_t i = 0; i < centres.size(); ++i)
-    if (i != id && light_field.Camera(LfImageId{i}).ForwardWorld().dot(forward) >= kLeastCosine)
-      others.emplace_back((centres[i] - centres[id]).squaredNorm(), i);
-  const auto end =
-      others.begin() + static_cast<ptrdiff_t>(std::min(others.size(), kJointNeighbours));
-  std::partial_sort(others.begin(), end, others.end());
-  std::vector<uint32_t> nearest;
-  for (auto other = others.begin(); other != end; ++other) nearest.push_back(other->second);
-  return nearest;
-}
 
 }  // namespace
 
@@ -129,11 +113,12 @@ Result<void> JointDemosaicker::State::FindRange(ThreadPool& pool) {
       FindInverseDepths(light_field, *rgb, compare_with, pool, {"range of depths", interrupted});
   if (!found && found.error().kind == ErrorKind::kInput)
     return InputError(fmt::format(
-        "{}: {{demosaic joint}} needs the depths of the scene, which cannot be found: {}; leave it "
-        "out to keep the mosaics",
-        light_field.source.string(), found.error().message));
+        "{}: {{demosaic joint}} needs the depths of the scene, which cannot be found, because the "
+        "LF images overlap too little or lack texture: leave it out to keep the mosaics",
+        light_field.source.string()));
   if (!found) return found.error();
   range = *found;
+  compare_with = FarEnoughForDepths(light_field, centres, subject, range, std::move(compare_with));
   return {};
 }
 
@@ -173,24 +158,16 @@ Result<JointImageResult> JointDemosaicker::State::Demosaic(uint32_t id) const {
   const IdealPositions ideal(image->camera);
   LF_ASSIGN_OR_RETURN(const Image<float> depths, DepthsOf(id, *image, ideal));
 
-  const std::vector<uint32_t> nearest = NearestOf(light_field, centres, id);
   std::vector<std::shared_ptr<const JointImage>> others;
   std::vector<JointNeighbour> neighbours;
-  // Samples of LF cameras as far away as the fourth one count 1 / (1 + kFar), farther ones less.
-  constexpr double kFar = 0.4;
-  const auto square_to = [&](uint32_t other) {
-    return (centres[other] - centres[id]).squaredNorm();
-  };
-  const double unit =
-      nearest.empty() ? 0 : square_to(nearest[std::min<size_t>(3, nearest.size() - 1)]);
-  for (const uint32_t other : nearest) {
-    LF_ASSIGN_OR_RETURN(auto loaded, images->Get(LfImageId{other}));
+  for (const ChosenNeighbour& chosen :
+       ChooseNeighbours(light_field, centres, id, range, kJointNeighbours)) {
+    LF_ASSIGN_OR_RETURN(auto loaded, images->Get(LfImageId{chosen.id}));
     const PixelPlaces places(image->camera, loaded->camera);
     const float middle = depths.at(image->width() / 2, image->height() / 2);
     neighbours.push_back(
         {loaded.get(), places, places.OffsetsIn(ideal, image->width(), image->height(), middle),
-         unit > 0 ? static_cast<float>(1 / (1 + kFar * square_to(other) / unit)) : 1.0F,
-         ShiftPerInverseDepth(image->working.camera, loaded->working.camera)});
+         chosen.nearness, ShiftPerInverseDepth(image->working.camera, loaded->working.camera)});
     others.push_back(std::move(loaded));
   }
 

@@ -2,10 +2,10 @@
 // Demosaics LF images with the help of their neighbours, which recorded the missing colours a pixel
 // or three away (joint_tile.h has the formula).
 //
-// Each LF image depends on up to kJointNeighbours others, the nearest ones that look in about the
-// same direction. Its inverse depths are searched as lfdensify does, by comparing it with the
-// nearest LF images in eight directions (CompareWith()), and are then corrected by fractions of a
-// pixel. A guard takes nothing from the neighbours where that would not be better (joint_guard.h).
+// Each LF image depends on up to kJointNeighbours others, near ones that look in about the same
+// direction (joint_neighbours.h). Its inverse depths are searched as lfdensify does, by comparing
+// it with LF images in eight directions, and are then corrected by fractions of a pixel. A guard
+// takes nothing from the neighbours where that would not be better (joint_guard.h).
 //
 // Limits: LF images of regular captures whose neighbours record the same colour of each point,
 // because points move by even numbers of pixels between them, gain little. What moves, glitters or
@@ -31,7 +31,7 @@ namespace lf {
 
 // The number changes whenever the same mosaics give other colours.
 inline constexpr int kJointVersion = 1;
-inline constexpr size_t kJointNeighbours = 24;
+inline constexpr size_t kJointNeighbours = 32;
 
 struct JointImageResult {
   // [height][width][3]: radiance before white balance, after gain and falloff, so that LF images of
@@ -48,8 +48,8 @@ class JointDemosaicker {
  public:
   struct Options {
     // Memory for LF images that are kept from one call to the next, 44 bytes for each pixel. Those
-    // in use, up to kJointNeighbours + 9 for each thread, and 900 bytes for each pixel of a tile of
-    // 256 x 256 pixels for each thread come on top.
+    // in use, up to kJointNeighbours + 9 for each thread, and 1600 bytes for each pixel of a tile
+    // of 256 x 256 pixels for each thread come on top.
     size_t memory_bytes = size_t{2} << 30;
     Watch watch;  // of the search for LF images that cannot be read
   };
