@@ -13,7 +13,11 @@ namespace {
 constexpr int kReach = MosaicCorrection::kReach_px;
 constexpr size_t kRing = 2 * kReach + 1;
 constexpr size_t kPixelLanes = LfPixels::kRgbLanes;
-constexpr size_t kSpare = 15;  // values that CorrectLanes() may read and write beyond the end
+constexpr size_t kSpare = 15;  // values that AddRows() and CorrectLanes() may touch beyond the end
+// Rows are corrected in blocks whose sums stay in the first level cache. The number is even, so
+// that all blocks begin at the same place in the pattern.
+constexpr size_t kBlock_px = 128;
+constexpr size_t kSumValues = (kBlock_px + 2 * kReach) * kPixelLanes + kSpare;
 
 // The weights at the places of a pixel in the pattern of the mosaic, as seen from a colour.
 struct PlaceWeights {
@@ -90,7 +94,7 @@ uint16_t Corrected(const MosaicCorrection::Weights& weights, const At& at, int c
     const int columns = MosaicCorrection::kGroups[k][0], rows = MosaicCorrection::kGroups[k][1];
     for (int dy = -rows; dy <= rows; dy += std::max(1, 2 * rows))
       for (int dx = -columns; dx <= columns; dx += std::max(1, 2 * columns))
-        if (const int32_t* const pixel = at(dx, dy)) sum += weights[k] * (pixel[channel] - itself);
+        if (const uint16_t* const pixel = at(dx, dy)) sum += weights[k] * (pixel[channel] - itself);
   }
   return static_cast<uint16_t>(std::clamp(itself + (sum >> MosaicCorrection::kBits), 0, 65535));
 }
@@ -113,7 +117,7 @@ MosaicCorrector::MosaicCorrector(int strength, const LfPixels& pixels)
       row_values_((static_cast<size_t>(pixels.radiance.width()) + 2 * kReach) * kPixelLanes +
                   kSpare),
       rows_(kRing * row_values_),
-      sums_(3 * row_values_),
+      sums_(3 * kSumValues),
       corrected_(row_values_) {
   LF_CHECK(strength >= 1 && strength <= kStrongestCorrection);
   LF_CHECK(pixels.bayer == BayerPattern::kNone && pixels.recorded != BayerPattern::kNone);
@@ -131,7 +135,7 @@ MosaicCorrector::MosaicCorrector(int strength, const LfPixels& pixels)
       }
 }
 
-int32_t* MosaicCorrector::KeptRow(int y) {
+uint16_t* MosaicCorrector::KeptRow(int y) {
   return rows_.data() + static_cast<size_t>(y) % kRing * row_values_ + kReach * kPixelLanes;
 }
 
@@ -154,15 +158,19 @@ const uint16_t* MosaicCorrector::Row(int y) {
 }
 
 void MosaicCorrector::CorrectWholeRow(int y) {
-  std::array<const int32_t*, 2 * kReach + 1> rows;
-  for (int i = -kReach; i <= kReach; ++i)
-    rows[static_cast<size_t>(i + kReach)] = KeptRow(y + i) - kReach * kPixelLanes;
-  const std::array<int32_t*, 3> sums = {sums_.data(), sums_.data() + row_values_,
-                                        sums_.data() + 2 * row_values_};
-  AddRows(rows, row_values_ - kSpare, sums);
+  const std::array<int32_t*, 3> sums = {sums_.data(), sums_.data() + kSumValues,
+                                        sums_.data() + 2 * kSumValues};
   constexpr size_t kFirst = kReach * kPixelLanes;
-  CorrectLanes(lane_weights_[y % 2], {sums[0] + kFirst, sums[1] + kFirst, sums[2] + kFirst},
-               static_cast<size_t>(pixels_.radiance.width()) * kPixelLanes, corrected_.data());
+  const auto width = static_cast<size_t>(pixels_.radiance.width());
+  for (size_t x = 0; x < width; x += kBlock_px) {
+    const size_t count = std::min(kBlock_px, width - x) * kPixelLanes;
+    std::array<const uint16_t*, 2 * kReach + 1> rows;
+    for (int i = -kReach; i <= kReach; ++i)
+      rows[static_cast<size_t>(i + kReach)] = KeptRow(y + i) + x * kPixelLanes - kFirst;
+    AddRows(rows, count + 2 * kFirst, sums);
+    CorrectLanes(lane_weights_[y % 2], {sums[0] + kFirst, sums[1] + kFirst, sums[2] + kFirst},
+                 count, corrected_.data() + x * kPixelLanes);
+  }
 }
 
 bool MosaicCorrector::AnyMaskedAround(int x, int y) {
@@ -175,11 +183,11 @@ bool MosaicCorrector::AnyMaskedAround(int x, int y) {
 
 // Corrects a pixel some of whose surroundings may be missing.
 void MosaicCorrector::CorrectPixel(int x, int y) {
-  const auto at = [&](int dx, int dy) -> const int32_t* {
+  const auto at = [&](int dx, int dy) -> const uint16_t* {
     if (x + dx < 0 || x + dx >= pixels_.radiance.width() || y + dy < 0 ||
         y + dy >= pixels_.radiance.height())
       return nullptr;
-    const int32_t* const pixel = KeptRow(y + dy) + (x + dx) * static_cast<ptrdiff_t>(kPixelLanes);
+    const uint16_t* const pixel = KeptRow(y + dy) + (x + dx) * static_cast<ptrdiff_t>(kPixelLanes);
     return pixel[LfPixels::kRayLane] == 0 ? nullptr : pixel;
   };
   uint16_t* const out = corrected_.data() + static_cast<size_t>(x) * kPixelLanes;

@@ -70,7 +70,7 @@ class MosaicCorrector {
   const uint16_t* Row(int y);
 
  private:
-  int32_t* KeptRow(int y);  // returns the copy of a row, at its first pixel
+  uint16_t* KeptRow(int y);  // returns the copy of a row, at its first pixel
   void CorrectWholeRow(int y);
   bool AnyMaskedAround(int x, int y);
   void CorrectPixel(int x, int y);
@@ -78,10 +78,10 @@ class MosaicCorrector {
   const LfPixels& pixels_;
   std::array<std::array<MosaicCorrection::Weights, 3>, 2> weights_[2];  // [y % 2][x % 2][channel]
   std::array<LaneWeights, 2> lane_weights_;                             // [y % 2]
-  size_t row_values_;          // number of values of a copied row, with columns beyond both ends
-  int kept_ = 0;               // number of rows that were copied
-  std::vector<int32_t> rows_;  // a ring of the last copied rows
-  std::vector<int32_t> sums_;  // AddRows()
+  size_t row_values_;           // number of values of a copied row, with columns beyond both ends
+  int kept_ = 0;                // number of rows that were copied
+  std::vector<uint16_t> rows_;  // a ring of the last copied rows
+  std::vector<int32_t> sums_;   // of a block: AddRows()
   std::vector<uint16_t> corrected_;
 };
 

@@ -19,7 +19,7 @@ void CorrectLanes(const LaneWeights& weights, const std::array<const int32_t*, 3
 
 // Writes the sums of five rows, from the second before to the second behind a row, to the three
 // rows of `sums`. Up to 15 values more than `count` are read and written.
-void AddRows(const std::array<const int32_t*, 5>& rows, size_t count,
+void AddRows(const std::array<const uint16_t*, 5>& rows, size_t count,
              const std::array<int32_t*, 3>& sums);
 
 }  // namespace lf
