@@ -45,7 +45,7 @@ constexpr lf::HelpTexts kHelp = {
   lfcompressor capture/ -o capture.lfs --profile lossless     # lossless
   lfcompressor capture/ -o capture.lfs --target-psnr 42 --verify
   lfcompressor capture/ -o capture.lfs --by-resolution        # for a web server
-  lfcompressor mosaic/ -o rgb.lfs --demosaic joint            # mosaics with their neighbours
+  lfcompressor mosaics/ -o rgb.lfs --demosaic joint           # mosaics with their neighbours
   lfcompressor packages/package-*.lfp -o film.lfs             # only the part that a film needs
   lfcompressor capture.lfs -o served.lfs --by-resolution      # copies what is encoded already
   lfrenderer capture.lfs path.yaml -o frames                  # a store is a LIGHTFIELD
@@ -321,10 +321,9 @@ lf::Result<Input> OpenInput(const Arguments& a, const std::atomic<bool>& interru
     argument.path = a.inputs.front();
     LF_ASSIGN_OR_RETURN(lf::LightField light_field, argument.Open());
     Input input;
-    LF_ASSIGN_OR_RETURN(input.source, lf::SourceOfAll(std::move(light_field)));
-    if (a.codec.demosaic == "joint") {
-      LF_ASSIGN_OR_RETURN(input.source, lf::DemosaickedJointly(std::move(input.source)));
-    }
+    LF_ASSIGN_OR_RETURN(input.source, a.codec.demosaic == "joint"
+                                          ? lf::DemosaickedJointly(std::move(light_field))
+                                          : lf::SourceOfAll(std::move(light_field)));
     LF_RETURN_IF_ERROR(CheckCopies(a, input.source));
     input.next = NextOf(a, {});
     return input;

@@ -172,8 +172,9 @@ std::string CompressField(const OpenedField& field, const std::string& name,
         const auto progress = [&](const CompressProgress& now) {
           work.signals.SetProgress({now.done, now.total, static_cast<int>(now.phase)});
         };
-        CompressSource source = Take(SourceOfAll(field.light_field));
-        if (codec.demosaic == "joint") source = Take(DemosaickedJointly(std::move(source)));
+        const CompressSource source =
+            Take(codec.demosaic == "joint" ? DemosaickedJointly(field.light_field)
+                                           : SourceOfAll(field.light_field));
         const CompressReport report = Take(Compress(source, options, pool, progress));
         return CompressJson(report, options);
       },

@@ -101,6 +101,7 @@ def make_world(folder: pathlib.Path, shell):
 
 SETUP = [
     "cp -r capture handheld",
+    "lfsynth lights -o mosaics --bayer --count 9 --size 48x32 -q",
     "lfpath path.yaml -o camera_path.json --format nerfstudio -q && lfpath path.yaml -o nuke.chan -q",
     "lfpreprocessor capture path.yaml -o packages --packages 2 -q",
     "lfcompressor capture -o capture.lfs -q && lfcompressor packages/*.lfp -o film.lfs -q",

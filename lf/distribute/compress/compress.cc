@@ -92,8 +92,10 @@ struct HeldLock {
 class Compressor {
  public:
   Compressor(const CompressSource& source, const CompressOptions& options, ThreadPool& pool,
-             const std::function<void(const CompressProgress&)>& progress)
+             const std::function<void(const CompressProgress&)>& progress,
+             CompressSource* prepared = nullptr)
       : source_(source),
+        prepared_(prepared),
         options_(options),
         pool_(pool),
         progress_(progress),
@@ -133,6 +135,7 @@ class Compressor {
   Error Interrupted() const;
 
   const CompressSource& source_;
+  CompressSource* const prepared_;  // `source_`, which Prepare() completes; null: it is complete
   const CompressOptions& options_;
   ThreadPool& pool_;
   const std::function<void(const CompressProgress&)>& progress_;
@@ -464,7 +467,7 @@ Result<void> Compressor::FindThresholdOf(Encoding* encoding) {
 
 // Prepares demosaicking, if the source needs it.
 Result<void> Compressor::Prepare() {
-  if (!source_.demosaicked || (report_.was_there && !options_.verify)) return {};
+  if (prepared_ == nullptr) return {};
   now_.phase = CompressPhase::kPreparing;
   const Result<void> prepared =
       source_.demosaicked->Prepare(pool_, options_.interrupted, [this](size_t done, size_t total) {
@@ -473,6 +476,7 @@ Result<void> Compressor::Prepare() {
         Show();
       });
   now_ = {};
+  if (prepared) prepared_->light_field.encoding.footprint = source_.demosaicked->footprint();
   return prepared;
 }
 
@@ -558,7 +562,9 @@ Result<CompressReport> Compressor::Run() {
 Result<CompressReport> Compress(const CompressSource& source, const CompressOptions& options,
                                 ThreadPool& pool,
                                 const std::function<void(const CompressProgress&)>& progress) {
-  return Compressor(source, options, pool, progress).Run();
+  if (!source.demosaicked) return Compressor(source, options, pool, progress).Run();
+  CompressSource prepared = source;
+  return Compressor(prepared, options, pool, progress, &prepared).Run();
 }
 
 }  // namespace lf

@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "lf/core/check.h"
+#include "lf/storage/load/lf_image_store.h"
+#include "lf/storage/load/measure_footprint.h"
 
 namespace lf {
 namespace {
@@ -16,6 +18,33 @@ namespace {
 constexpr double kMostStored = 65535;
 // Stored value of no light, which leaves room for values below black.
 constexpr double kStoredBlack = 4096;
+
+// Loads LF images that are demosaicked on the way.
+class JointStore : public LfImageStore {
+ public:
+  JointStore(const JointDemosaicker& joint, const RadianceEncoding& encoding)
+      : joint_(joint), encoding_(encoding) {}
+
+  Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override {
+    LF_ASSIGN_OR_RETURN(const JointImageResult joint, joint_.Demosaic(id));
+    *pixels = LfPixels(rect, BayerPattern::kNone);
+    for (int y = 0; y < rect.height(); ++y)
+      for (int x = 0; x < rect.width(); ++x)
+        for (int c = 0; c < 3; ++c) {
+          const float radiance = joint.rgb.at(rect.x_begin + x, rect.y_begin + y, c);
+          if (std::isnan(radiance)) {
+            pixels->Mask(x, y);
+            break;
+          }
+          pixels->radiance.at(x, y, c) = QuantizeRadiance(encoding_, radiance, 1);
+        }
+    return {};
+  }
+
+ private:
+  const JointDemosaicker& joint_;
+  const RadianceEncoding& encoding_;
+};
 
 }  // namespace
 
@@ -35,8 +64,11 @@ RadianceEncoding RgbEncodingOf(const LightField& mosaics) {
   return encoding;
 }
 
-DemosaickedImages::DemosaickedImages(LightField mosaics)
-    : mosaics_(std::move(mosaics)), encoding_(RgbEncodingOf(mosaics_)), errors_(mosaics_.size()) {}
+DemosaickedImages::DemosaickedImages(LightField mosaics, bool measures_footprint)
+    : mosaics_(std::move(mosaics)),
+      measures_footprint_(measures_footprint),
+      encoding_(RgbEncodingOf(mosaics_)),
+      errors_(mosaics_.size()) {}
 
 std::string DemosaickedImages::Words() {
   return fmt::format("demosaicked jointly ({})", kJointVersion);
@@ -47,6 +79,10 @@ Result<void> DemosaickedImages::Prepare(ThreadPool& pool, const std::atomic<bool
   JointDemosaicker::Options options;
   options.watch = {"mosaics", interrupted, tell};
   LF_ASSIGN_OR_RETURN(joint_, JointDemosaicker::Make(mosaics_, pool, options));
+  if (!measures_footprint_) return {};
+  LightField rgb = mosaics_;
+  rgb.encoding = encoding_;
+  LF_ASSIGN_OR_RETURN(encoding_.footprint, MeasureFootprint(rgb, JointStore(*joint_, encoding_)));
   return {};
 }
 
@@ -100,9 +136,13 @@ GuardErrors DemosaickedImages::Errors() const {
   return sum;
 }
 
-Result<CompressSource> DemosaickedJointly(CompressSource source) {
-  LF_RETURN_IF_ERROR(CheckForJoint(source.light_field));
-  source.demosaicked = std::make_shared<DemosaickedImages>(source.light_field);
+Result<CompressSource> DemosaickedJointly(LightField mosaics) {
+  LF_RETURN_IF_ERROR(CheckForJoint(mosaics));
+  // A packed store may state what was measured from its mosaics.
+  const bool is_stated = mosaics.encoding.footprint && !HoldsPackedStore(mosaics);
+  if (!is_stated) mosaics.encoding.footprint = PixelFootprint::kArea;
+  LF_ASSIGN_OR_RETURN(CompressSource source, SourceOfAll(std::move(mosaics)));
+  source.demosaicked = std::make_shared<DemosaickedImages>(source.light_field, !is_stated);
   source.light_field.encoding = RgbEncodingOf(source.light_field);
   source.films.reset();
   return source;

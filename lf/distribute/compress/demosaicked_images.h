@@ -29,16 +29,21 @@ RadianceEncoding RgbEncodingOf(const LightField& mosaics);
 
 class DemosaickedImages {
  public:
-  //   mosaics  CheckForJoint() must have succeeded
-  explicit DemosaickedImages(LightField mosaics);
+  //   mosaics              CheckForJoint() must have succeeded
+  //   measures_footprint   true: Prepare() measures it, because that of mosaics is hard to tell
+  DemosaickedImages(LightField mosaics, bool measures_footprint);
 
   // Returns words that a packed store records, so that it is resumed only with equal pixels.
   static std::string Words();
 
-  // Must have succeeded before Read() is called. Errors of JointDemosaicker::Make().
+  // Must have succeeded before Read() is called. Errors of JointDemosaicker::Make() and
+  // MeasureFootprint().
   //   tell  called with the number of LF images that were looked at; may be empty
   Result<void> Prepare(ThreadPool& pool, const std::atomic<bool>* interrupted,
                        const std::function<void(size_t done, size_t total)>& tell);
+
+  // Returns the footprint of the RGB LF images. Prepare() must have succeeded.
+  std::optional<PixelFootprint> footprint() const { return encoding_.footprint; }
 
   // Returns the pixels `rect`, clipped to the image, as stored values of RgbEncodingOf(). Each call
   // demosaics the LF image again. May be called by many threads at the same time. Errors of
@@ -50,15 +55,17 @@ class DemosaickedImages {
 
  private:
   const LightField mosaics_;
-  const RadianceEncoding encoding_;  // RgbEncodingOf()
+  const bool measures_footprint_;
+  RadianceEncoding encoding_;  // RgbEncodingOf()
   std::unique_ptr<JointDemosaicker> joint_;
 
   mutable std::mutex mutex_;                        // guards errors_
   std::vector<std::optional<GuardErrors>> errors_;  // [id]
 };
 
-// Returns the source with RGB LF images in place of its mosaics, without packages. Its light field
-// may be a packed store, whose encoded images are then decoded. Errors of CheckForJoint().
-Result<CompressSource> DemosaickedJointly(CompressSource source);
+// Returns all LF images of a light field of mosaics as RGB. It may be a packed store, whose encoded
+// images are then decoded. The footprint in its encoding has no meaning until
+// DemosaickedImages::Prepare() has succeeded. Errors of CheckForJoint() and SourceOfAll().
+Result<CompressSource> DemosaickedJointly(LightField mosaics);
 
 }  // namespace lf

@@ -59,7 +59,7 @@ TEST_F(DemosaickedImagesTest, AStoreHasTheRadianceOfTheMosaics) {
   mosaics.intrinsics[0].vignetting.v = {-0.3, 0, 0};
   for (LfCamera& camera : mosaics.cameras) camera.gain = {0.8F, 0.5F, 0.9F};
   source_.whole = IdentityOf(mosaics);
-  const auto source = DemosaickedJointly(source_);
+  const auto source = DemosaickedJointly(source_.light_field);
   ASSERT_TRUE(source) << source.error().message;
   const LfPixels stored = Stored(*source, 7);
 
@@ -84,7 +84,7 @@ TEST_F(DemosaickedImagesTest, MaskedPixelsStayMasked) {
   source_.light_field.mask_names.assign(source_.light_field.size(), "");
   source_.light_field.mask_names[3] = "mask.png";
   source_.whole = IdentityOf(source_.light_field);
-  const auto source = DemosaickedJointly(source_);
+  const auto source = DemosaickedJointly(source_.light_field);
   ASSERT_TRUE(source) << source.error().message;
   const LfPixels stored = Stored(*source, 3);
   EXPECT_TRUE(stored.IsMasked(kWidth / 2 - 10, 30));
@@ -103,9 +103,23 @@ TEST_F(DemosaickedImagesTest, TheEncodingHoldsTheLightOfAllGains) {
   EXPECT_TRUE(LevelsFit(RgbEncodingOf(mosaics), 16));
 }
 
+TEST_F(DemosaickedImagesTest, TheFootprintIsThatOfTheColoursUnlessItIsStated) {
+  source_.light_field.encoding.footprint = PixelFootprint::kPoint;
+  const auto stated = DemosaickedJointly(source_.light_field);
+  ASSERT_TRUE(stated);
+  Stored(*stated, 0);
+  EXPECT_EQ(field_.encoding.footprint, PixelFootprint::kPoint);
+  source_.light_field.encoding.footprint.reset();
+  const auto measured = DemosaickedJointly(source_.light_field);
+  ASSERT_TRUE(measured);
+  Stored(*measured, 0);
+  // The drawn texture has no sharp edges.
+  EXPECT_EQ(field_.encoding.footprint, PixelFootprint::kArea);
+}
+
 TEST_F(DemosaickedImagesTest, OnlyMosaicsAreDemosaicked) {
   source_.light_field.encoding.bayer = BayerPattern::kNone;
-  const auto source = DemosaickedJointly(source_);
+  const auto source = DemosaickedJointly(source_.light_field);
   ASSERT_FALSE(source);
   EXPECT_EQ(source.error().kind, ErrorKind::kUsage);
 }
