@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kLeastStep = 0.08;  // least radiance by which the two sides of an edge differ
 constexpr double kFlat = 0.1;        // largest step beside an edge, as a share of the edge's step
-constexpr int kLeastEdges = 200;
+// Fewer edges may all be the same one, repeated in a pattern, which says nothing.
+constexpr int kLeastEdges = 500;
 // Pixels show points if a smaller share of the edges has a value between their two sides.
 constexpr double kMostOfPoints = 0.3;
 constexpr int kMostSide_px = 2048;  // most width and height of the part of an LF image that is read
@@ -70,21 +71,27 @@ void CountEdges(const LfPixels& pixels, double least_step, Edges* edges) {
 }  // namespace
 
 Result<PixelFootprint> MeasureFootprint(const LightField& light_field, const LfImageStore& store) {
-  constexpr size_t kImages = 3;
+  constexpr size_t kImages = 3, kTries = 3;
   Edges edges;
   LfPixels pixels;
   for (size_t i = 0; i < kImages; ++i) {
-    const LfImageId id{static_cast<uint32_t>((2 * i + 1) * light_field.size() / (2 * kImages))};
     if (i > 0 && light_field.size() <= i) break;
-    const Intrinsics& k = light_field.Camera(id).intrinsics;
-    const int width = std::min(k.width_px, kMostSide_px),
-              height = std::min(k.height_px, kMostSide_px);
-    const int x = (k.width_px - width) / 2, y = (k.height_px - height) / 2;
-    Result<LfPixels> loaded =
-        LoadWithoutThrowing(store, id, {x, y, x + width, y + height},
-                            light_field.image_names[id.value], std::move(pixels));
-    if (!loaded && loaded.error().kind != ErrorKind::kInput) return loaded.error();
-    pixels = loaded ? *std::move(loaded) : LfPixels();
+    const size_t first = (2 * i + 1) * light_field.size() / (2 * kImages);
+    // The next LF image takes the place of one that cannot be read, so that the answer does not
+    // depend on how many edges are left.
+    for (size_t n = first; n < std::min(first + kTries, light_field.size()); ++n) {
+      const LfImageId id{static_cast<uint32_t>(n)};
+      const Intrinsics& k = light_field.Camera(id).intrinsics;
+      const int width = std::min(k.width_px, kMostSide_px),
+                height = std::min(k.height_px, kMostSide_px);
+      const int x = (k.width_px - width) / 2, y = (k.height_px - height) / 2;
+      Result<LfPixels> loaded =
+          LoadWithoutThrowing(store, id, {x, y, x + width, y + height},
+                              light_field.image_names[id.value], std::move(pixels));
+      if (!loaded && loaded.error().kind != ErrorKind::kInput) return loaded.error();
+      pixels = loaded ? *std::move(loaded) : LfPixels();
+      if (loaded) break;
+    }
     if (pixels.radiance.channels() == LfPixels::kRgbLanes)
       CountEdges(pixels, kLeastStep * light_field.encoding.Scale(), &edges);
   }

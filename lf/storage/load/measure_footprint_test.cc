@@ -20,7 +20,8 @@ LightField FieldOf(size_t count) {
   return field;
 }
 
-// Shows a disk of radius 70 and light 0.5 on black, whose middle differs from image to image.
+// Shows a disk of radius 70 (18: kFewPoints) and light 0.5 on black, whose middle differs from
+// image to image.
 class DiskStore : public LfImageStore {
  public:
   enum class Pixels { kAreas, kPoints, kFlat, kMosaic };
@@ -50,6 +51,7 @@ class DiskStore : public LfImageStore {
   }
 
   uint32_t broken = UINT32_MAX, unreadable = UINT32_MAX;
+  double radius_px = 70;
 
  private:
   // Returns the mean light of points x points points in a square of `width_px` around (u, v).
@@ -58,7 +60,7 @@ class DiskStore : public LfImageStore {
     for (int i = 0; i < points * points; ++i) {
       const double x = u + width_px * ((i % points + 0.5) / points - 0.5);
       const double y = v + width_px * ((i / points + 0.5) / points - 0.5);
-      inside += std::hypot(x - 100.3 - id.value, y - 99.8) < 70 || shows_ == Pixels::kFlat;
+      inside += std::hypot(x - 100.3 - id.value, y - 99.8) < radius_px || shows_ == Pixels::kFlat;
     }
     return static_cast<double>(inside) / (points * points);
   }
@@ -72,6 +74,23 @@ TEST(MeasureFootprint, SeesHowEdgesAreRecorded) {
   const LightField field = FieldOf(9);
   EXPECT_EQ(MeasureFootprint(field, DiskStore(Pixels::kAreas)).value(), PixelFootprint::kArea);
   EXPECT_EQ(MeasureFootprint(field, DiskStore(Pixels::kPoints)).value(), PixelFootprint::kPoint);
+}
+
+// A small disk has about 370 edges in three LF images.
+TEST(MeasureFootprint, FewEdgesTellNothing) {
+  DiskStore store(DiskStore::Pixels::kPoints);
+  store.radius_px = 8;
+  EXPECT_EQ(MeasureFootprint(FieldOf(9), store).value(), PixelFootprint::kArea);
+}
+
+// Three LF images of this disk have enough edges, and two have too few.
+TEST(MeasureFootprint, AnotherLfImageReplacesABrokenOne) {
+  DiskStore store(DiskStore::Pixels::kPoints);
+  store.radius_px = 12;
+  EXPECT_EQ(MeasureFootprint(FieldOf(9), store).value(), PixelFootprint::kPoint);
+  EXPECT_EQ(MeasureFootprint(FieldOf(2), store).value(), PixelFootprint::kArea);
+  store.broken = 4;
+  EXPECT_EQ(MeasureFootprint(FieldOf(9), store).value(), PixelFootprint::kPoint);
 }
 
 // Interpolated colours lie between the two sides of an edge even if pixels show points.
