@@ -31,14 +31,6 @@ struct PlaceWeights {
 // Made by bench/mosaic_correction.cc, for the shares of MosaicCorrection::kShares.
 constexpr PlaceWeights kWeights[kStrongestCorrection] = {
     {
-        // 1
-        {0, 0, 0, 0, 0, 0, 0, 0},
-        {540, -155, 441, -208, 73, -154, 129, -94},
-        {10, -99, 10, 172, -17, -99, -17, -68},
-        {0, 0, 0, 0, 0, 0, 0, 0},
-        {340, -234, 340, -343, 129, -234, 129, -10},
-    },
-    {
         // 0.3
         {-546, 95, -546, -71, 58, 95, 58, -36},
         {853, -168, 29, -287, 21, 21, 123, -50},

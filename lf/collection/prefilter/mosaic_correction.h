@@ -29,11 +29,11 @@
 
 namespace lf {
 
-inline constexpr int kStrongestCorrection = 5;
+inline constexpr int kStrongestCorrection = 4;
 
 struct MosaicCorrection {
   // Shares s of the strengths 1, 2, ...
-  static constexpr std::array<double, kStrongestCorrection> kShares = {1, 0.3, 0.1, 0.03, 0.01};
+  static constexpr std::array<double, kStrongestCorrection> kShares = {0.3, 0.1, 0.03, 0.01};
 
   static constexpr int kReach_px = 2;
   static constexpr int kBits = 12;

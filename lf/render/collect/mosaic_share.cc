@@ -55,12 +55,13 @@ double MosaicShareOf(std::span<const FrameLens> lenses, std::span<const LfImageI
 
 int CorrectionFor(double share) {
   constexpr const auto& kShares = MosaicCorrection::kShares;
-  int strength = 1;
-  // The borders between strengths are the geometric means of their shares.
+  int strength = 0;
+  // The borders between strengths are the geometric means of their shares. That of no correction is
+  // 1.
+  double of_strength = 1;
   while (strength < kStrongestCorrection &&
-         kShareFactor * share < std::sqrt(kShares[static_cast<size_t>(strength) - 1] *
-                                          kShares[static_cast<size_t>(strength)]))
-    ++strength;
+         kShareFactor * share < std::sqrt(of_strength * kShares[static_cast<size_t>(strength)]))
+    of_strength = kShares[static_cast<size_t>(strength++)];
   return strength;
 }
 

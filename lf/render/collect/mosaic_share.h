@@ -22,7 +22,8 @@ namespace lf {
 double MosaicShareOf(std::span<const FrameLens> lenses, std::span<const LfImageId> images);
 inline constexpr int kSampledElements = 48;
 
-// Returns the strength of the correction (Prefilter::correction) for a share of the error. Not all
+// Returns the strength of the correction (Prefilter::correction) for a share of the error: 0, none,
+// for shares near 1, because demosaicked pictures alone are best as they are. Not all
 // of the error that the weights of corrections were made for stays in a frame, and errors of the
 // mean do not become as small as they assume; the factor between the shares was chosen with half of
 // the rows of doc/quality.md.

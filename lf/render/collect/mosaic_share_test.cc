@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "lf/collection/prefilter/mosaic_correction.h"
 #include "lf/core/random.h"
 
 namespace lf {
@@ -80,9 +81,9 @@ TEST(MosaicShare, OfRandomPlacesIsOneByTheirNumber) {
 }
 
 TEST(MosaicShare, ASmallerShareAllowsAStrongerCorrection) {
-  EXPECT_EQ(CorrectionFor(1), 1);
-  EXPECT_EQ(CorrectionFor(1e-9), 5);
-  int before = 1;
+  EXPECT_EQ(CorrectionFor(1), 0);
+  EXPECT_EQ(CorrectionFor(1e-9), kStrongestCorrection);
+  int before = 0;
   for (double share = 1; share > 1e-4; share *= 0.9) {
     EXPECT_GE(CorrectionFor(share), before);
     EXPECT_LE(CorrectionFor(share), before + 1);
