@@ -3,6 +3,11 @@
 // (lf/collection/prefilter/mosaic_correction.h), and writes them to stdout as the table of
 // mosaic_correction.cc.
 //
+//   lf_mosaic_correction STILL-LIFE half:$LF_TEST_DATA/groundtruth/data/planar/transforms.json \
+//     half:$LF_TEST_DATA/groundtruth/data/band/transforms.json half:$LF_TEST_DATA/data/blender-shop
+//
+// makes those that are used; STILL-LIFE is the light field of bench/quality/mosaics.py.
+//
 //   FIELD  an RGB light field, whose LF images show the truth; with "half:" in front, LF images of
 //          half their size (means of 2 x 2 pixels). Six LF images of each are used
 //

@@ -18,6 +18,7 @@ import tempfile
 
 import lens_weights
 import mosaic_sensor
+import quality
 from lens_weights import COLLECT
 from mosaic_sensor import NOISE
 from quality import results
@@ -62,7 +63,7 @@ def cases_of(scenes, scene):
 
 def table_of(renderer, scenes, only):
     table = lens_weights.Table("scene", "noise", "diameter, in camera distances", "elements per LF pixel", "for", "RGB",
-                               *WAYS)
+                               *WAYS, "joint")
     for scene in SCENES:
         if only not in scene:
             continue
@@ -70,7 +71,8 @@ def table_of(renderer, scenes, only):
             decibels = lambda calibration, options: lens_weights.text(lens_weights.decibels(
                 renderer, case.truth, calibration, case.path, options))
             table.add(*case.cells, case.purpose, decibels(case.rgb, ""),
-                      *(decibels(case.mosaics, options) for options in WAYS.values()))
+                      *(decibels(case.mosaics, options) for options in WAYS.values()),
+                      decibels(quality.joint_store(renderer, case.mosaics), ""))
     return table
 
 

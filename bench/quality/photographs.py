@@ -91,13 +91,15 @@ def cases_of(name, renderer, data, folder):
 
 
 def table_of(renderer, data, folder, only):
-    table = lens_weights.Table("capture", "noise", "diameter, in camera distances", "focus", "for", *RGB_WAYS, *WAYS)
+    table = lens_weights.Table("capture", "noise", "diameter, in camera distances", "focus", "for", *RGB_WAYS, *WAYS,
+                               "joint")
     for name in CAPTURES:
         if only not in name:
             continue
         for case in cases_of(name, renderer, data, folder):
             renders = [(field, words) for field, ways in ((case.rgb, RGB_WAYS), (case.mosaics, WAYS))
                        for words in ways.values()]
+            renders.append((quality.joint_store(renderer, case.mosaics), ""))
             frames = [lens_weights.first_frame(renderer, field, case.path, words)[0] for field, words in renders]
             table.add(*case.cells, case.purpose, *("-" if np.array_equal(frame, case.truth) else
                                                    f"{lens_weights.psnr(case.truth, frame):.2f}" for frame in frames))

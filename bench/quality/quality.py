@@ -3,7 +3,8 @@
 """Renders the ground truth cases, compares them with true thin-lens pictures and prints the tables
 of doc/quality.md.
 
-usage: quality.py LFRENDERER GROUNDTRUTH [--areas] [--name NAME] [--write doc/quality.md] [--check] [--keep DIR]
+usage: quality.py LFRENDERER GROUNDTRUTH [--areas] [--joint] [--name NAME] [--write doc/quality.md] [--check]
+                  [--keep DIR]
        quality.py --again JSON [--write doc/quality.md]
 
 GROUNDTRUTH  folder with cases.json, README.md, gt/ and data/
@@ -11,6 +12,8 @@ GROUNDTRUTH  folder with cases.json, README.md, gt/ and data/
              nearest, gather for bilinear, the better of both for the others
 --areas      the other table: pixels that show areas. LF images and true pictures are reduced to half their size, by
              means of 2 x 2 pixels in linear light
+--joint      adds a column of mosaics that lfcompressor, beside LFRENDERER, has demosaicked together with their
+             neighbours
 --keep DIR   leave paths, frames and difference pictures there
 Exit 77 if GROUNDTRUTH is absent: the test then counts as skipped, not as passed.
 """
@@ -195,7 +198,7 @@ def true_picture_of_areas(truth, case):
     return halved(halved(read_pfm(truth / case["linear"].replace("_half", ""))[1:-1]))
 
 
-def measure_areas(renderer, truth, folder):
+def measure_areas(renderer, truth, folder, is_joint):
     """Returns one row per case: {column: dB}, and the number of contributing LF images."""
     fields, mosaics, rows = {}, {}, []
     for case in json.loads((truth / "cases.json").read_text())["cases"]:
@@ -219,22 +222,36 @@ def measure_areas(renderer, truth, folder):
                     row["lf_images"] = images
                 rendered = cv2.imread(str(frame), cv2.IMREAD_UNCHANGED)[..., 2::-1]
                 row[column] = -10 * math.log10(np.mean((rendered - picture) ** 2))
+        if is_joint:
+            frame, _ = render(renderer, joint_store(renderer, mosaics[calibration]), path, work / "joint", "")
+            rendered = cv2.imread(str(frame), cv2.IMREAD_UNCHANGED)[..., 2::-1]
+            row[JOINT] = -10 * math.log10(np.mean((rendered - picture) ** 2))
         rows.append(row)
         print(row, file=sys.stderr, flush=True)
     return rows
 
 
+def joint_store(renderer, mosaics):
+    """Returns the packed store of mosaics that are demosaicked together with their neighbours; it is made once."""
+    store = mosaics.with_name("joint.lfs")
+    if not store.exists():
+        results.call([renderer.with_name("lfcompressor"), mosaics, "-o", store, "--demosaic", "joint", "--profile",
+                      "lossless", "-q"])
+    return store
+
+
 def table_of_areas(rows):
-    columns = (*OF_AREAS, *MOSAICS_OF_AREAS)
+    columns = [column for column in (*OF_AREAS, *MOSAICS_OF_AREAS, JOINT) if column in rows[0]]
     lines = ["| case | for | LF images | " + " | ".join(columns) + " |", "| --- " * (len(columns) + 3) + "|"]
     return lines + [f"| {row['case']} | {purpose(row['case'])} | {row['lf_images']} | " +
                     " | ".join(f"{row[column]:.2f}" for column in columns) + " |" for row in rows]
 
 
+JOINT = "Bayer, joint"
 COLUMNS = ("nearest", "scatter", "bilinear", "gather", "bicubic", "default", "bayer_nearest", "bayer_default")
 
 
-def measure(renderer, truth, folder):
+def measure(renderer, truth, folder, is_joint):
     """Returns one row per case: {column: dB}, and the number of contributing LF images."""
     references, bayer, rows = reference_columns(truth), {}, []
     for case in json.loads((truth / "cases.json").read_text())["cases"]:
@@ -255,16 +272,24 @@ def measure(renderer, truth, folder):
             frame, images = render(renderer, light_field, path, work / column, options)
             row[column] = psnr(truth, case, frame)
             row.setdefault("lf_images", images)
+        if is_joint:
+            frame, _ = render(renderer, joint_store(renderer, bayer[calibration]), path, work / "joint", "")
+            row[JOINT] = psnr(truth, case, frame)
         rows.append(row)
         print(row, file=sys.stderr, flush=True)
     return rows
 
 
 def table(rows):
-    lines = ["| case | for | LF images | nearest | reference | bilinear | reference | bicubic | default | "
-             "Bayer, nearest | Bayer, default |", "| --- " * 11 + "|"]
+    names = ["case", "for", "LF images", "nearest", "reference", "bilinear", "reference", "bicubic", "default",
+             "Bayer, nearest", "Bayer, default"]
+    columns = list(COLUMNS)
+    if JOINT in rows[0]:
+        names.append(JOINT)
+        columns.append(JOINT)
+    lines = ["| " + " | ".join(names) + " |", "| --- " * len(names) + "|"]
     return lines + [f"| {row['case']} | {purpose(row['case'])} | {row['lf_images']} | " +
-                    " | ".join(f"{row[column]:.2f}" for column in COLUMNS) +
+                    " | ".join(f"{row[column]:.2f}" for column in columns) +
                     " |" for row in rows]
 
 
@@ -285,6 +310,7 @@ def main():
     parser.add_argument("groundtruth", type=pathlib.Path, nargs="?")
     parser.add_argument("--areas", action="store_true")
     parser.add_argument("--check", action="store_true")
+    parser.add_argument("--joint", action="store_true")
     parser.add_argument("--keep", type=pathlib.Path)
     results.add_options(parser)
     arguments = parser.parse_args()
@@ -298,7 +324,7 @@ def main():
         with tempfile.TemporaryDirectory() as temporary:
             folder = arguments.keep or pathlib.Path(temporary)
             record["rows"] = (measure_areas if arguments.areas else measure)(
-                arguments.renderer, arguments.groundtruth, folder)
+                arguments.renderer, arguments.groundtruth, folder, arguments.joint)
     else:
         parser.error("LFRENDERER GROUNDTRUTH or --again is needed")
     rows = record["rows"]

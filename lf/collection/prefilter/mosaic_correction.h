@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Corrects RGB pixels that were made from a mosaic, for the mean of many LF images. Internal to
-// this folder, apart from kStrongestCorrection.
+// Corrects RGB pixels that were made from a mosaic, for the mean of many LF images.
 //
 // A demosaicked value is a guess from the surroundings, and guesses have a bias: fine detail of a
 // colour is lost where the colour was not recorded. In the mean over many LF images, noise and
@@ -13,11 +12,11 @@
 //
 // The weights minimise
 //   (1 - s) E|mean of V over the four places of the pattern - truth|^2 + s mean of E|V - truth|^2
-// over LF images of lfsynth, the ground truth and photographs (bench/mosaic_correction.cc makes
-// them). s is the share of the second error that is left in an element: 1 if it has the ray of one
-// LF image, or if all its rays come from the same place in the pattern, and about 1 / N if it has N
-// rays from random places. kShares has the s of each strength; MosaicShareOf() of
-// render/collect/mosaic_share.h finds the s of a frame.
+// over LF images of one scene of lfsynth, the ground truth and a rendered shop
+// (bench/mosaic_correction.cc makes them). s is the share of the second error that is left in an
+// element: 1 if it has the ray of one LF image, or if all its rays come from the same place in the
+// pattern, and about 1 / N if it has N rays from random places. kShares has the s of each strength;
+// MosaicShareOf() of render/collect/mosaic_share.h finds the s of a frame.
 #pragma once
 
 #include <array>

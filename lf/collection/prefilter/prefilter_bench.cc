@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures how long FilterPixels() takes, in ns per pixel, for elements of several widths and with
-// every instruction set of the processor.
+// Measures how long FilterPixels() takes, in ns per pixel, for elements of several widths, without
+// and with the correction of mosaics, and with every instruction set of the processor.
 #include <benchmark/benchmark.h>
 #include <hwy/highway.h>
 
@@ -12,14 +12,16 @@
 namespace lf {
 namespace {
 
-// The argument is four times the width of an element in LF pixels.
+// The arguments are four times the width of an element in LF pixels, and the strength of the
+// correction.
 void BM_FilterPixels(benchmark::State& state, int64_t target) {
   hwy::SetSupportedTargetsForTest(target);
   hwy::GetChosenTarget().DeInit();
   const PixelRect rect{0, 0, 960, 640};
   LfPixels pixels(rect, BayerPattern::kNone), filtered;
-  const Prefilter filter =
-      PrefilterFor(static_cast<double>(state.range(0)) / 4, PixelFootprint::kArea);
+  pixels.recorded = BayerPattern::kRggb;
+  Prefilter filter = PrefilterFor(static_cast<double>(state.range(0)) / 4, PixelFootprint::kArea);
+  filter.correction = static_cast<int>(state.range(1));
   for (auto _ : state) {
     FilterPixels(filter, pixels, &filtered);
     benchmark::DoNotOptimize(filtered.radiance.row(0));
@@ -36,12 +38,8 @@ void BM_FilterPixels(benchmark::State& state, int64_t target) {
     benchmark::RegisterBenchmark(
         (std::string("BM_FilterPixels/") + hwy::TargetName(target)).c_str(), BM_FilterPixels,
         target)
-        ->Arg(4)
-        ->Arg(8)
-        ->Arg(13)
-        ->Arg(16)
-        ->Arg(32)
-        ->Arg(64);
+        ->ArgsProduct({{4, 8, 13, 16, 32, 64}, {0}})
+        ->Args({4, 3});
   return true;
 }();
 

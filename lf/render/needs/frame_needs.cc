@@ -280,7 +280,8 @@ Result<void> CheckKept(const LfImageStore& store, const LightField& light_field,
     if (!store.Keeps(image.id, image.rect))
       return InputError(fmt::format(
           "{}: this packed store lacks pixels that frame {} needs of {}, because it was made for "
-          "other frames, or for another {{mode}}, {{estimator}} or {{lens_weights}}: compress the "
+          "other frames, for another {{mode}}, {{estimator}} or {{lens_weights}}, or by a version "
+          "that reads fewer pixels of mosaics: compress the "
           "original light field again, as a whole or from packages of these frames and options",
           light_field.folder.string(), frame.value, light_field.image_names[image.id.value]));
   return {};

@@ -66,7 +66,7 @@ void AddPictureRows(std::vector<Setting>& rows) {
   rows.push_back(
       Choice({.key = "lf_pixels",
               .matters = IsBilinear,
-              .text = "What LF pixels show, for {filter prefiltered} and {filter mosaic}\n"
+              .text = "What LF pixels show, for {filter prefiltered} and mosaic\n"
                       "areas: the mean light of their area, as in photographs\n"
                       "points: the light of their centre, as in renders without anti-aliasing\n"
                       "auto: as lf_pixels of the light field says, otherwise measured"},
