@@ -12,8 +12,9 @@ namespace {
 
 constexpr double kLeastStep = 0.08;  // least radiance by which the two sides of an edge differ
 constexpr double kFlat = 0.1;        // largest step beside an edge, as a share of the edge's step
-// Fewer edges may all be the same one, repeated in a pattern, which says nothing.
-constexpr int kLeastEdges = 500;
+constexpr int kLeastEdges = 200;
+// Fewer edges of a mosaic, which shows few, may all be the same one, repeated in a pattern.
+constexpr int kLeastEdgesOfMosaics = 500;
 // Pixels show points if a smaller share of the edges has a value between their two sides.
 constexpr double kMostOfPoints = 0.3;
 constexpr int kMostSide_px = 2048;  // most width and height of the part of an LF image that is read
@@ -95,8 +96,9 @@ Result<PixelFootprint> MeasureFootprint(const LightField& light_field, const LfI
     if (pixels.radiance.channels() == LfPixels::kRgbLanes)
       CountEdges(pixels, kLeastStep * light_field.encoding.Scale(), &edges);
   }
-  const bool shows_points =
-      edges.count >= kLeastEdges && edges.with_value_between < kMostOfPoints * edges.count;
+  const bool is_mosaic = light_field.encoding.bayer != BayerPattern::kNone;
+  const bool shows_points = edges.count >= (is_mosaic ? kLeastEdgesOfMosaics : kLeastEdges) &&
+                            edges.with_value_between < kMostOfPoints * edges.count;
   return shows_points ? PixelFootprint::kPoint : PixelFootprint::kArea;
 }
 

@@ -15,7 +15,8 @@ namespace lf {
 // any of them has a value between those of the two sides of its edge; if they show areas, most
 // have. In 10 scenes and captures, the share of pixels with such a value was 0.09 - 0.14 where
 // pixels show points, 0.54 - 0.63 in renders whose pixels show areas, and 0.79 - 1.0 in
-// photographs, whose lenses blur. Returns kArea if fewer than 500 sharp edges are found, or the LF
+// photographs, whose lenses blur. Returns kArea if fewer than 200 sharp edges are found (500 in
+// mosaics), or the LF
 // images are broken. kOutput: the machine lacks something, such as memory; a guess instead would
 // change the bits of frames. In mosaics, recorded green pixels along diagonals are looked at.
 //   store  must load mosaics as RGB

@@ -76,17 +76,22 @@ TEST(MeasureFootprint, SeesHowEdgesAreRecorded) {
   EXPECT_EQ(MeasureFootprint(field, DiskStore(Pixels::kPoints)).value(), PixelFootprint::kPoint);
 }
 
-// A small disk has about 370 edges in three LF images.
-TEST(MeasureFootprint, FewEdgesTellNothing) {
-  DiskStore store(DiskStore::Pixels::kPoints);
-  store.radius_px = 8;
-  EXPECT_EQ(MeasureFootprint(FieldOf(9), store).value(), PixelFootprint::kArea);
+// The edges of a small disk in three LF images are enough, unless these are mosaics.
+TEST(MeasureFootprint, FewEdgesOfMosaicsTellNothing) {
+  LightField mosaics = FieldOf(9);
+  mosaics.encoding.bayer = BayerPattern::kRggb;
+  DiskStore rgb(DiskStore::Pixels::kPoints);
+  DiskStore store(DiskStore::Pixels::kPoints, BayerPattern::kRggb);
+  EXPECT_EQ(MeasureFootprint(mosaics, store).value(), PixelFootprint::kPoint);
+  rgb.radius_px = store.radius_px = 10;
+  EXPECT_EQ(MeasureFootprint(FieldOf(9), rgb).value(), PixelFootprint::kPoint);
+  EXPECT_EQ(MeasureFootprint(mosaics, store).value(), PixelFootprint::kArea);
 }
 
 // Three LF images of this disk have enough edges, and two have too few.
 TEST(MeasureFootprint, AnotherLfImageReplacesABrokenOne) {
   DiskStore store(DiskStore::Pixels::kPoints);
-  store.radius_px = 12;
+  store.radius_px = 5;
   EXPECT_EQ(MeasureFootprint(FieldOf(9), store).value(), PixelFootprint::kPoint);
   EXPECT_EQ(MeasureFootprint(FieldOf(2), store).value(), PixelFootprint::kArea);
   store.broken = 4;
