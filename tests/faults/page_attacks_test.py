@@ -26,7 +26,9 @@ import small_field
 from program_test_case import ProgramTestCase
 
 VISUALIZER = None
-MOST_MIB = 32    # the server's peak memory may grow by this much in an attack
+# The server's peak memory may grow by this much in an attack: two bodies of 8 MiB, whose buffers may just have doubled,
+# and what answers need.
+MOST_MIB = 40
 GIVE_UP_S = 60   # a server that has not answered after this time never will
 MIB = 1 << 20
 TABLE = []
