@@ -144,6 +144,19 @@ TEST(MosaicCorrection, WeightsMoveWithThePattern) {
       }
 }
 
+// Green pixels beside red ones take red mostly from these, whether they stand in a row or a column.
+TEST(MosaicCorrection, ColoursComeFromWhereTheyWereRecorded) {
+  for (int strength = 1; strength <= kStrongestCorrection; ++strength) {
+    const auto in_row = CorrectionWeights(strength, BayerPattern::kRggb, 1, 0, 0);
+    const auto in_column = CorrectionWeights(strength, BayerPattern::kRggb, 0, 1, 0);
+    ASSERT_EQ(MosaicCorrection::kGroups[0][0], 1);  // group 0 is beside, group 2 above and below
+    ASSERT_EQ(MosaicCorrection::kGroups[2][1], 1);
+    EXPECT_GT(in_row[0], in_row[2] + 500) << strength;
+    EXPECT_EQ(in_column[0], in_row[2]);
+    EXPECT_EQ(in_column[2], in_row[0]);
+  }
+}
+
 // A dot that interpolation has lost where it was not recorded: it becomes brighter in the mean of
 // the four places of the pattern, the more the stronger the correction is.
 TEST(MosaicCorrection, RestoresWhatTheMeanHasLost) {
