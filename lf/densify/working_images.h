@@ -2,13 +2,10 @@
 // The working images of a light field, loaded when they are needed, within a limit of memory.
 #pragma once
 
-#include <condition_variable>
 #include <cstddef>
-#include <list>
 #include <memory>
-#include <mutex>
-#include <unordered_map>
 
+#include "lf/densify/kept_images.h"
 #include "lf/densify/working_image.h"
 
 namespace lf {
@@ -22,31 +19,19 @@ class WorkingImages {
       : light_field_(light_field),
         store_(store),
         divisor_(divisor),
-        most_bytes_(most_bytes),
-        curve_(light_field.encoding) {}
+        curve_(light_field.encoding),
+        kept_(most_bytes) {}
 
   // Returns the working image of an LF image. May be called by many threads at the same time; an
   // image is loaded once. Errors of LoadWorkingImage().
   Result<std::shared_ptr<const WorkingImage>> Get(LfImageId id);
 
  private:
-  struct Kept {
-    std::shared_ptr<const WorkingImage> image;  // nullptr while a thread loads it
-    std::list<LfImageId>::iterator use;
-  };
-  void DropOld();
-
   const LightField& light_field_;
   const LfImageStore& store_;
   const int divisor_;
-  const size_t most_bytes_;
   const ToneCurve curve_;
-
-  std::mutex mutex_;  // guards all members below
-  std::condition_variable loaded_;
-  std::unordered_map<LfImageId, Kept> kept_;
-  std::list<LfImageId> uses_;  // the last used first
-  size_t bytes_ = 0;
+  KeptImages<WorkingImage> kept_;
 };
 
 }  // namespace lf
