@@ -173,7 +173,9 @@ TEST(MosaicCorrection, RestoresWhatTheMeanHasLost) {
       FilterPixels(Only(strength), pixels, &corrected);
       mean += corrected.radiance.at(4, 4, 0) / 4.;
     }
-    if (strength > 0) EXPECT_GT(mean, before + 400) << strength;
+    if (strength > 0) {
+      EXPECT_GT(mean, before + 400) << strength;
+    }
     before = mean;
   }
   EXPECT_GT(before, 17000);
