@@ -212,7 +212,8 @@ Result<Made> Make(const DepthArguments& a, const CommonOptions& common, ThreadPo
   LF_RETURN_IF_ERROR(CheckOutputs(a, light_field));  // another call may have ended just now
   LF_ASSIGN_OR_RETURN(const CameraPath path,
                       a.frame.Open(light_field, PathOptions::Surface::kName));
-  const RenderCamera& camera = path.Camera(a.frame.id());
+  const FrameId id = a.frame.IdIn(path);
+  const RenderCamera& camera = path.Camera(id);
   options.from_store = a.from == "store";
   if (!options.from_store) {
     LF_ASSIGN_OR_RETURN(options.range, RangeOf(a, light_field, camera, pool));
@@ -233,13 +234,14 @@ Result<Made> Make(const DepthArguments& a, const CommonOptions& common, ThreadPo
   const auto total = static_cast<uint64_t>(camera.pinhole.intrinsics.width_px) *
                      static_cast<uint64_t>(camera.pinhole.intrinsics.height_px);
   std::mutex mutex;
-  LF_ASSIGN_OR_RETURN(
-      made.map, MakeDepthMap(index, *store, a.frame.id(), camera, options, pool, [&](double share) {
-        const std::lock_guard lock(mutex);
-        meter.Update(static_cast<uint64_t>(share * static_cast<double>(total)), total,
-                     std::string("depth"));
-      }));
+  LF_ASSIGN_OR_RETURN(made.map,
+                      MakeDepthMap(index, *store, id, camera, options, pool, [&](double share) {
+                        const std::lock_guard lock(mutex);
+                        meter.Update(static_cast<uint64_t>(share * static_cast<double>(total)),
+                                     total, std::string("depth"));
+                      }));
   made.map.notes.fps = path.fps;
+  made.map.notes.first_frame = path.first_frame;
   made.map.notes.version = Version();
   made.picture = DevelopFrame(made.map.notes, made.map.sharp, nullptr, false, pool, {}).picture;
   return made;
@@ -255,7 +257,7 @@ size_t PlaneCount(const DepthMap& map) {
 }
 
 std::string ReportJson(const DepthArguments& a, const Made& made) {
-  nlohmann::ordered_json report = {{"frame", a.frame.frame},
+  nlohmann::ordered_json report = {{"frame", made.map.notes.frame.value},
                                    {"files", a.outputs},
                                    {"from", a.from},
                                    {"near_w", made.map.range.near_w},

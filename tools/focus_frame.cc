@@ -19,8 +19,8 @@ void FrameArgument::AddTo(OptionGroup& input) {
 }
 
 void FrameArgument::AddNumberTo(OptionGroup& input) {
-  input.Add("--frame N", frame, "Frame of PATH whose camera is used, from 1")
-      ->check(CLI::Range(1, kMostFrames));
+  input.Add("--frame N", frame, "Frame of PATH whose camera is used (the first)")
+      ->check(CLI::Range(uint32_t{0}, kLargestFrameNumber));
 }
 
 Result<CameraPath> FrameArgument::Open(const LightField& light_field,
@@ -29,10 +29,11 @@ Result<CameraPath> FrameArgument::Open(const LightField& light_field,
   options.surface = surface;
   LF_ASSIGN_OR_RETURN(CameraPath opened, OpenPath(path, options));
   LF_RETURN_IF_ERROR(FitToOpenTimes(light_field, &opened));
-  if (frame > opened.frame_count())
-    return UsageError(fmt::format("--frame {}: {} has {} frame{}: give a number from 1 to {}",
-                                  frame, path, opened.frame_count(),
-                                  opened.frame_count() == 1 ? "" : "s", opened.frame_count()));
+  if (frame && !opened.frames().Has({*frame}))
+    return UsageError(fmt::format("--frame {}: {} has {} frame{}: give a number from {} to {}",
+                                  *frame, path, opened.frame_count(),
+                                  opened.frame_count() == 1 ? "" : "s", opened.frames().first,
+                                  opened.frames().last()));
   return opened;
 }
 

@@ -16,10 +16,12 @@
 namespace lf {
 
 struct FrameArgument {
-  std::string path;  // PATH
-  uint32_t frame = 1;
+  std::string path;                    // PATH
+  std::optional<uint32_t> frame = {};  // unset: the first of the path
 
-  FrameId id() const { return FrameId{frame}; }
+  FrameId IdIn(const CameraPath& opened) const {
+    return frame ? FrameId{*frame} : opened.frames().At(0);
+  }
   // Adds the positional argument PATH, and --frame N.
   void AddTo(OptionGroup& input);
   void AddNumberTo(OptionGroup& input);  // --frame N alone

@@ -207,15 +207,18 @@ Result<std::vector<double>> DistancesOf(const Arguments& a, const LightField& li
   return EvenFocusDistances(range, a.planes);
 }
 
-Result<CameraPath> OpenStack(const Arguments& a, const LightField& light_field, ThreadPool& pool) {
+// Returns the path of the stack, and sets *frame to the frame of PATH whose camera it has.
+Result<CameraPath> OpenStack(const Arguments& a, const LightField& light_field, ThreadPool& pool,
+                             FrameId* frame) {
   LF_ASSIGN_OR_RETURN(CameraPath path, a.frame.Open(light_field));
   if (a.fps) path.fps = *a.fps;
+  *frame = a.frame.IdIn(path);
   LF_ASSIGN_OR_RETURN(const std::vector<double> distances_w,
-                      DistancesOf(a, light_field, path.Camera(a.frame.id()), pool));
-  LogInfo("focus stack of frame {}: {} plane{} from {:.6g} to {:.6g} world units", a.frame.frame,
+                      DistancesOf(a, light_field, path.Camera(*frame), pool));
+  LogInfo("focus stack of frame {}: {} plane{} from {:.6g} to {:.6g} world units", frame->value,
           distances_w.size(), distances_w.size() == 1 ? "" : "s", distances_w.front(),
           distances_w.back());
-  return FocusStackPath(path, a.frame.id(), distances_w);
+  return FocusStackPath(path, *frame, distances_w);
 }
 
 struct Rendered {
@@ -229,12 +232,11 @@ Result<Rendered> RenderStack(const Arguments& a, const CommonOptions& common, Th
                              RenderSignals* signals,
                              const std::function<void(const RenderProgress&)>& progress) {
   LF_ASSIGN_OR_RETURN(LightField light_field, a.render.light_field.Open());
-  LF_ASSIGN_OR_RETURN(CameraPath stack, OpenStack(a, light_field, pool));
   FocusStackOptions options;
   options.output = a.render.output;
-  options.frame = a.frame.id();
+  LF_ASSIGN_OR_RETURN(CameraPath stack, OpenStack(a, light_field, pool, &options.frame));
   options.back_and_forth = a.back_and_forth;
-  LF_ASSIGN_OR_RETURN(options.render, a.render.MakeOptions(common, stack.frame_count()));
+  LF_ASSIGN_OR_RETURN(options.render, a.render.MakeOptions(common, stack.frames()));
   options.render.signals = signals;
   options.render.folder.inputs = FilesOfPath(a.frame.path);
   options.render.folder.inputs.emplace_back(a.render.light_field.path);

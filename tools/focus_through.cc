@@ -211,10 +211,10 @@ Result<Opened> Open(const Arguments& a, bool has_folder, const std::atomic<bool>
         "{}: the path has a shutter, whose blur has no share in an order of rays: leave the "
         "shutter out",
         a.frame.path));
-  LF_ASSIGN_OR_RETURN(opened.frames, a.frames.Of(opened.path.frame_count()));
+  LF_ASSIGN_OR_RETURN(opened.frames, a.frames.Of(opened.path.frames()));
   if (a.frames.IsNone(opened.frames)) return opened;
   SurfaceWork work = {opened.frames, &pool, &interrupted};
-  if (!has_folder) work.frames = {a.frame.id()};
+  if (!has_folder) work.frames = {a.frame.IdIn(opened.path)};
   // A film compares the surfaces of all frames of earlier renders that it finds.
   if (a.resume || (has_folder && !ReportsIn(a.outputs.front()).empty())) work.frames.clear();
   LF_RETURN_IF_ERROR(AddFocalSurfaces(a.frame.path, opened.light_field, work, &opened.path));
@@ -225,13 +225,14 @@ Result<StatisticFrame> MakeOne(const Arguments& a, Opened opened,
                                const LensStatisticOptions& options, const CommonOptions& common,
                                ThreadPool& pool) {
   ProgressMeter meter(ParseProgressStyle(common.progress), "LF images");
+  const FrameId id = a.frame.IdIn(opened.path);
   LF_ASSIGN_OR_RETURN(StatisticFrame frame,
-                      MakeStatisticFrame(std::move(opened.light_field), a.frame.id(),
-                                         opened.path.Camera(a.frame.id()), options, pool,
-                                         [&](size_t done, size_t total) {
+                      MakeStatisticFrame(std::move(opened.light_field), id, opened.path.Camera(id),
+                                         options, pool, [&](size_t done, size_t total) {
                                            meter.Update(done, total, std::string(a.statistic));
                                          }));
   frame.notes.fps = opened.path.fps;
+  frame.notes.first_frame = opened.path.first_frame;
   frame.notes.version = Version();
   return frame;
 }
@@ -264,7 +265,7 @@ nlohmann::ordered_json StatisticJson(const Arguments& a) {
 }
 
 std::string ReportJson(const Arguments& a, const StatisticFrame& frame, const RayCounts& counts) {
-  nlohmann::ordered_json report = {{"frame", a.frame.frame}, {"files", a.outputs}};
+  nlohmann::ordered_json report = {{"frame", frame.notes.frame.value}, {"files", a.outputs}};
   report.update(StatisticJson(a));
   report["lf_images"] = frame.image_count;
   report["lf_images_skipped"] = frame.skipped.size();
@@ -370,7 +371,7 @@ Result<std::optional<RenderReport>> RenderPackageFiles(const Arguments& a, const
   LF_ASSIGN_OR_RETURN(const LightFieldPlace place, PlaceOf(a.light_field.path, light_field));
   LF_ASSIGN_OR_RETURN(PackagedFilm packages, OpenPackages({a.paths.begin(), a.paths.end()}, place));
   RenderOptions options = film.Options(packages.first.light_field.encoding);
-  LF_ASSIGN_OR_RETURN(options.frames, a.frames.Of(packages.first.path.frame_count()));
+  LF_ASSIGN_OR_RETURN(options.frames, a.frames.Of(packages.first.path.frames()));
   if (a.frames.IsNone(options.frames)) return std::optional<RenderReport>();
   LF_ASSIGN_OR_RETURN(RenderReport report,
                       RenderPackages(std::move(packages), options, pool, tell));

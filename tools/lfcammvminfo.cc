@@ -29,18 +29,19 @@ program also checks the path: the exit code is 0 if the path has no error.)",
 
 struct Arguments {
   std::string path;
-  uint32_t frame = 0;  // number of the frame to be shown; 0: all frames
+  std::optional<uint32_t> frame;  // number of the frame to be shown; unset: all frames
   std::optional<double> unit_m;
   bool csv = false;
 };
 
 lf::Result<std::vector<lf::FrameId>> ChooseFrames(const Arguments& arguments,
                                                   const lf::CameraPath& path) {
-  if (arguments.frame > path.frame_count())
-    return lf::UsageError(fmt::format("--frame {}: {} has no such frame; expected 1 to {}",
-                                      arguments.frame, arguments.path, path.frame_count()));
-  if (arguments.frame > 0) return std::vector<lf::FrameId>{{arguments.frame}};
-  return lf::AllFrames(path);
+  if (!arguments.frame) return path.frames().All();
+  if (!path.frames().Has({*arguments.frame}))
+    return lf::UsageError(fmt::format("--frame {}: {} has no such frame; expected {} to {}",
+                                      *arguments.frame, arguments.path, path.frames().first,
+                                      path.frames().last()));
+  return std::vector<lf::FrameId>{{*arguments.frame}};
 }
 
 lf::Result<void> Report(const Arguments& arguments, bool json) {
@@ -50,7 +51,7 @@ lf::Result<void> Report(const Arguments& arguments, bool json) {
   LF_ASSIGN_OR_RETURN(const auto frames, ChooseFrames(arguments, path));
   if (json) return lf::PrintReport(lf::CameraJson(path, frames));
   if (arguments.csv) return lf::PrintReport(lf::CameraCsv(path, frames));
-  if (arguments.frame > 0) return lf::PrintReport(lf::CameraBlock(path, frames.front()));
+  if (arguments.frame) return lf::PrintReport(lf::CameraBlock(path, frames.front()));
   return lf::PrintReport(lf::CameraTable(path, frames));
 }
 
@@ -64,8 +65,8 @@ int main(int argc, char** argv) {
   input
       .Add("--unit-m METRES", arguments.unit_m, "Metres per world unit, if PATH does not state it")
       ->check(CLI::Range(1e-9, 1e9));
-  output.Add("--frame N", arguments.frame, "Print only frame N, counted from 1 (all)")
-      ->check(CLI::PositiveNumber);
+  output.Add("--frame N", arguments.frame, "Print only the frame with the number N (all)")
+      ->check(CLI::Range(uint32_t{0}, lf::kLargestFrameNumber));
   CLI::Option* const csv = output.AddFlag(
       "--csv", arguments.csv, "Print a comma-separated table, with all digits of numbers");
   program.AddCommonOptions({.json = "Print JSON with all digits\n"

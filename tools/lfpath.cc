@@ -47,8 +47,8 @@ frames; doc/formats/foreign_paths.md has their conventions. A warning lists what
 "Picture" state it, and replace what PATH states. Without -o, the program prints the camera of every
 frame, as lfcammvminfo does.
 
---stereo and --quilt make several views of every frame: the views of frame 1, those of frame 2, and so
-on. Their cameras stand side by side, are parallel, and have shifted plates, so that the plane of
+--stereo and --quilt make several views of every frame: the views of the first frame, those of the
+second, and so on. Their cameras stand side by side, are parallel, and have shifted plates, so that the plane of
 convergence is at the same place in all views. Render OUT as any path; lfquilt then puts the views
 together (doc/stereo.md).
 
@@ -64,7 +64,7 @@ struct Arguments {
   std::optional<double> focal_length_mm, focus_distance, fps;
   std::optional<std::pair<int, int>> resolution;
   std::vector<double> ngp_offset;
-  std::optional<uint32_t> frames;
+  std::optional<uint32_t> frames, first_frame;
   double scale = 1;
   std::optional<double> separation_w, separation_mm, view_angle_deg;
   std::string convergence;
@@ -154,6 +154,11 @@ void AddOutput(CLI::App& app, Arguments& a) {
           "the film takes longer or shorter. With several views of each moment, N counts all views "
           "and is a multiple of their number.")
       ->check(CLI::Range(1, 1'000'000));
+  output
+      .Add("--first-frame N", a.first_frame,
+           "Number of the first frame, such as 1001 (as PATH states, else 1)\n"
+           "Frames then have these numbers in file names, in --frames and in messages.")
+      ->check(CLI::Range(uint32_t{0}, lf::kLargestFrameNumber));
   output.AddFlag("--overwrite", a.overwrite, "Replace OUT")->needs(out);
 }
 
@@ -294,6 +299,26 @@ lf::Result<lf::CameraPath> ViewsOf(const Arguments& a, lf::CameraPath path) {
                        convergence_w);
 }
 
+// Gives the frames the numbers of --first-frame.
+lf::Result<lf::CameraPath> Renumbered(const Arguments& a, lf::CameraPath path) {
+  if (!a.first_frame || *a.first_frame == path.first_frame) return path;
+  if (path.focal_surface && lf::HasFilePerFrame(*path.focal_surface))
+    return lf::InputError(fmt::format(
+        "--first-frame {}: the focal surface {} has a file for the number of each frame, from {} "
+        "on: leave --first-frame out, or give the files other numbers and state first_frame in the "
+        "path",
+        *a.first_frame, path.focal_surface->file, path.first_frame));
+  path.first_frame = *a.first_frame;
+  return path;
+}
+
+lf::Result<void> CheckNumbers(const lf::CameraPath& path) {
+  if (path.frames().last() <= lf::kLargestFrameNumber) return {};
+  return lf::UsageError(fmt::format(
+      "the last of {} frames from {} on has the number {}, above {}: give a smaller --first-frame",
+      path.frame_count(), path.first_frame, path.frames().last(), lf::kLargestFrameNumber));
+}
+
 lf::Result<lf::CameraPath> Changed(const Arguments& a, lf::CameraPath path) {
   LF_ASSIGN_OR_RETURN(const lf::Similarity similarity, lf::ReadSimilarity(a.transform, a.scale));
   if (!a.transform.empty() || a.scale != 1)
@@ -358,10 +383,12 @@ lf::Result<void> Run(const Arguments& a, bool json) {
   LF_ASSIGN_OR_RETURN(lf::CameraPath opened, lf::OpenPath(a.path, options));
   NameFromOutput(a, &opened);
   LF_ASSIGN_OR_RETURN(lf::CameraPath changed, Changed(a, std::move(opened)));
-  LF_ASSIGN_OR_RETURN(const lf::CameraPath path, ViewsOf(a, std::move(changed)));
+  LF_ASSIGN_OR_RETURN(lf::CameraPath numbered, Renumbered(a, std::move(changed)));
+  LF_ASSIGN_OR_RETURN(const lf::CameraPath path, ViewsOf(a, std::move(numbered)));
+  LF_RETURN_IF_ERROR(CheckNumbers(path));
   if (!a.output.empty()) LF_RETURN_IF_ERROR(Write(a, options, path));
   if (!a.output.empty() && !json) return {};
-  const std::vector<lf::FrameId> frames = lf::AllFrames(path);
+  const std::vector<lf::FrameId> frames = path.frames().All();
   return lf::PrintReport(json ? lf::CameraJson(path, frames) : lf::CameraTable(path, frames));
 }
 

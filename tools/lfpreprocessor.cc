@@ -163,7 +163,7 @@ lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::Comm
   options.overwrite = a.overwrite;
   options.inputs = lf::FilesOfPath(a.path);
   options.inputs.emplace_back(a.light_field.path);
-  LF_ASSIGN_OR_RETURN(options.frames, a.frames.Of(path.frame_count()));
+  LF_ASSIGN_OR_RETURN(options.frames, a.frames.Of(path.frames()));
   LF_RETURN_IF_ERROR(a.settings.Set(&options.film));
   options.film.seed = common.seed;
   options.film.guard = !a.no_guard;

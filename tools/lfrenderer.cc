@@ -84,7 +84,7 @@ lf::Result<Rendered> RenderLightField(const lf::RenderArguments& arguments,
   LF_ASSIGN_OR_RETURN(lf::CameraPath path,
                       lf::OpenPath(arguments.inputs[1], lf::PathOptionsToRender(light_field)));
   LF_RETURN_IF_ERROR(lf::FitToOpenTimes(light_field, &path));
-  LF_ASSIGN_OR_RETURN(lf::RenderOptions options, arguments.MakeOptions(common, path.frame_count()));
+  LF_ASSIGN_OR_RETURN(lf::RenderOptions options, arguments.MakeOptions(common, path.frames()));
   if (arguments.HasNoFrame(options)) return NoFrames(arguments, std::move(options));
   options.signals = signals;
   // A render compares the surfaces of all frames of earlier renders that it finds.
@@ -126,7 +126,7 @@ lf::Result<Rendered> RenderPackageFiles(const lf::RenderArguments& arguments,
       lf::PackagedFilm film,
       lf::OpenPackages({arguments.inputs.begin(), arguments.inputs.end()}, std::move(place)));
   LF_ASSIGN_OR_RETURN(lf::RenderOptions options,
-                      arguments.MakeOptions(common, film.first.path.frame_count()));
+                      arguments.MakeOptions(common, film.first.path.frames()));
   if (arguments.HasNoFrame(options)) return NoFrames(arguments, std::move(options));
   options.signals = signals;
   return Rendered{lf::RenderPackages(std::move(film), options, pool, progress), options};

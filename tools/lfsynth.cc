@@ -166,6 +166,7 @@ lf::Result<void> Write(const Arguments& arguments, const lf::CommonOptions& comm
                      {.light_field_unit_m = 1.0, .surface = lf::PathOptions::Surface::kMake}));
     field.truth_cameras.assign(path.AllInstants().begin(), path.AllInstants().end());
     field.truth_instants = path.shutter.samples;
+    field.first_truth_frame = path.first_frame;
     field.inputs = lf::FilesOfPath(arguments.truth);
   }
   lf::ThreadPool pool(common.threads);

@@ -176,12 +176,9 @@ lf::Result<void> PrintText(const Arguments& a, const lf::CommonOptions& common) 
   LF_ASSIGN_OR_RETURN(lf::CameraPath path,
                       lf::OpenPath(a.path, lf::PathOptionsToRender(light_field)));
   LF_RETURN_IF_ERROR(lf::FitToOpenTimes(light_field, &path));
-  LF_ASSIGN_OR_RETURN(std::vector<lf::FrameId> frames, a.frames.Of(path.frame_count()));
-  if (a.frames.IsNone(frames))
-    a.frames.TellNone();
-  else
-    for (uint32_t number = 1; a.frames.range.empty() && number <= path.frame_count(); ++number)
-      frames.push_back(lf::FrameId{number});
+  LF_ASSIGN_OR_RETURN(std::vector<lf::FrameId> frames, a.frames.Of(path.frames()));
+  if (a.frames.IsNone(frames)) a.frames.TellNone();
+  if (a.frames.range.empty()) frames = path.frames().All();
   lf::ThreadPool pool(common.threads);
   LF_RETURN_IF_ERROR(lf::AddFocalSurfaces(a.path, light_field, {frames, &pool, nullptr}, &path));
   return lf::WriteSceneText(light_field, path, frames,

@@ -269,7 +269,7 @@ Result<FilmSettings> RenderArguments::MakeFilm(uint64_t seed) const {
   return film;
 }
 
-Result<FolderOptions> RenderArguments::MakeFolder(size_t frame_count) const {
+Result<FolderOptions> RenderArguments::MakeFolder(const FrameNumbers& all) const {
   FolderOptions folder;
   folder.output_folder = output;
   folder.format = *ParseFrameFormat(format);
@@ -281,21 +281,21 @@ Result<FolderOptions> RenderArguments::MakeFolder(size_t frame_count) const {
   folder.resume = resume;
   folder.overwrite = overwrite;
   if (!finish.empty()) {
-    LF_ASSIGN_OR_RETURN(folder.finish_early, ParseFrameRange(finish, frame_count, "--finish"));
+    LF_ASSIGN_OR_RETURN(folder.finish_early, ParseFrameRange(finish, all, "--finish"));
   }
   folder.version = Version();
   return folder;
 }
 
 Result<RenderOptions> RenderArguments::MakeOptions(const CommonOptions& common,
-                                                   size_t frame_count) const {
+                                                   const FrameNumbers& all) const {
   RenderOptions options;
-  LF_ASSIGN_OR_RETURN(options.frames, frames.Of(frame_count));
+  LF_ASSIGN_OR_RETURN(options.frames, frames.Of(all));
   LF_ASSIGN_OR_RETURN(options.film, MakeFilm(common.seed));
   LF_ASSIGN_OR_RETURN(options.work.memory_bytes, ParseByteSize(memory, "--memory"));
   options.work.strict = common.strict;
   options.work.whole_images = rectangles == "off";
-  LF_ASSIGN_OR_RETURN(options.folder, MakeFolder(frame_count));
+  LF_ASSIGN_OR_RETURN(options.folder, MakeFolder(all));
   return options;
 }
 

@@ -50,13 +50,13 @@ struct RenderArguments {
 
   // Converts the arguments to options. If --clamp-frames leaves out all frames, which
   // HasNoFrame() tells, they must not be used, because they would mean all frames.
-  //   frame_count  number of frames of the film
-  Result<RenderOptions> MakeOptions(const CommonOptions& common, size_t frame_count) const;
+  //   all  frames of the film
+  Result<RenderOptions> MakeOptions(const CommonOptions& common, const FrameNumbers& all) const;
   bool HasNoFrame(const RenderOptions& options) const { return frames.IsNone(options.frames); }
 
  private:
   Result<FilmSettings> MakeFilm(uint64_t seed) const;
-  Result<FolderOptions> MakeFolder(size_t frame_count) const;
+  Result<FolderOptions> MakeFolder(const FrameNumbers& all) const;
 };
 
 }  // namespace lf

@@ -184,7 +184,7 @@ Result<RenderOptions> TryArguments(const std::vector<fs::path>& packages, const 
   LF_ASSIGN_OR_RETURN(*film, OpenPackages(packages, std::move(place)));
   const Package& first = film->first;
   LF_ASSIGN_OR_RETURN(RenderOptions options,
-                      render.MakeOptions(renderer.common(), first.path.frame_count()));
+                      render.MakeOptions(renderer.common(), first.path.frames()));
   LF_RETURN_IF_ERROR(CheckRenderOptions(first, options));
   return options;
 }

@@ -31,10 +31,10 @@ FrameRenderer::~FrameRenderer() = default;
 
 Result<FrameRenderer> FrameRenderer::Open(const Film& film, std::vector<FrameId> frames) {
   for (const FrameId frame : frames)
-    if (frame.value < 1 || frame.value > film.path.frame_count())
+    if (!film.path.frames().Has(frame))
       return UsageError(
-          fmt::format("frame {}: expected a number from 1 to {}, as the path has frames",
-                      frame.value, film.path.frame_count()));
+          fmt::format("frame {}: expected a number from {} to {}, as the path has frames",
+                      frame.value, film.path.frames().first, film.path.frames().last()));
   if (std::adjacent_find(frames.begin(), frames.end(), std::greater_equal<>()) != frames.end())
     return UsageError("the numbers of frames are not in ascending order: sort them");
   std::unique_ptr<State> state(new State{ThreadPool(film.work.threads)});

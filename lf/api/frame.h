@@ -34,7 +34,7 @@ struct Frame {
 // Renders a frame of the film, with WorkSettings::threads threads. The bits are those of lfrenderer
 // with the same settings. With a mode that rebins, which rays are kept depends on all frames that
 // are rendered together; RenderFilm() and FrameRenderer render those.
-//   number  of the frame, from 1
+//   number  of the frame, one of film.path.frames()
 // kUsage: the path has no such frame. kInput: no LF image contributes to the frame, or all that do
 // are broken. Other errors are those of FrameRenderer.
 Result<Frame> RenderFrame(const Film& film, uint32_t number);

@@ -19,7 +19,7 @@ struct Id {
 // One photograph of the light field: its index in LightField::cameras.
 using LfImageId = Id<struct LfImageTag>;
 
-// One rendered image of the sequence. Frame numbers start at 1 (frame 1 is time 0).
+// One rendered image of the sequence, by its number (frame_numbers.h).
 using FrameId = Id<struct FrameTag>;
 
 }  // namespace lf

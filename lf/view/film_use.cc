@@ -17,7 +17,7 @@ constexpr std::chrono::milliseconds kBetweenWords(250);
 FilmUse::FilmUse(const ImageIndex& index, std::shared_ptr<const PathFrames> path,
                  const NeedsOptions& options, ThreadPool& pool, std::function<void()> on_progress)
     : path_(std::move(path)),
-      frames_(ShownFrames(path_->frame_count())),
+      frames_(ShownFrames(path_->frames())),
       on_progress_(std::move(on_progress)) {
   facts_.image_counts.assign(frames_.size(), 0);
   facts_.ray_counts.assign(frames_.size(), 0);

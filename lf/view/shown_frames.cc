@@ -12,14 +12,12 @@ size_t ShownStep(size_t frame_count) {
   return (frame_count - 1 + kMostShownFrames - 2) / (kMostShownFrames - 1);
 }
 
-std::vector<FrameId> ShownFrames(size_t frame_count) {
-  const size_t step = ShownStep(frame_count);
-  std::vector<FrameId> frames;
-  for (size_t frame = 1; frame <= frame_count; frame += step)
-    frames.push_back(FrameId{static_cast<uint32_t>(frame)});
-  if (!frames.empty() && frames.back().value < frame_count)
-    frames.push_back(FrameId{static_cast<uint32_t>(frame_count)});
-  return frames;
+std::vector<FrameId> ShownFrames(const FrameNumbers& frames) {
+  const size_t step = ShownStep(frames.count);
+  std::vector<FrameId> shown;
+  for (size_t i = 0; i < frames.count; i += step) shown.push_back(frames.At(i));
+  if (!shown.empty() && shown.back().value < frames.last()) shown.push_back({frames.last()});
+  return shown;
 }
 
 }  // namespace lf

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "lf/core/frame_numbers.h"
 #include "lf/core/ids.h"
 
 namespace lf {
@@ -17,6 +18,6 @@ inline constexpr size_t kMostShownFrames = 10'000;
 size_t ShownStep(size_t frame_count);
 // Returns the shown frames of a film, ascending: each ShownStep()-th from the first on, and the
 // last.
-std::vector<FrameId> ShownFrames(size_t frame_count);
+std::vector<FrameId> ShownFrames(const FrameNumbers& frames);
 
 }  // namespace lf

@@ -12,7 +12,8 @@ from .errors import UsageError
 
 
 class Path(Sequence[Camera]):
-    """A camera path: one camera for each frame. Frames are numbered from 1, the items of this sequence from 0.
+    """A camera path: one camera for each frame. The items of this sequence are numbered from 0, frames
+    from `first_frame`.
 
     Parameters
     ----------
@@ -28,6 +29,9 @@ class Path(Sequence[Camera]):
         Number of views of each moment, as in the paths of stereo pairs and light field displays that ``lfpath`` makes
         (``--stereo``, ``--quilt``). The first cameras are the views of the first moment, the next ones those of the
         second moment, and so on; `fps` is the rate of the moments. With more than one, there is no shutter.
+    first_frame : int, optional
+        Number of the first frame, such as 1001, for names of files and the option `frames`. A part of the path (a
+        slice) begins with the same number.
 
     Examples
     --------
@@ -40,7 +44,8 @@ class Path(Sequence[Camera]):
     """
 
     def __init__(self, cameras: Iterable[Camera], fps: float = 24,
-                 shutter: Union[None, Tuple[float, int], Mapping[str, Any]] = None, views: int = 1) -> None:
+                 shutter: Union[None, Tuple[float, int], Mapping[str, Any]] = None, views: int = 1,
+                 first_frame: int = 1) -> None:
         self._cameras: List[Camera] = list(arguments.iterator("cameras", cameras, "lf.Camera objects"))
         self.fps = fps
         for camera in self._cameras:
@@ -56,6 +61,7 @@ class Path(Sequence[Camera]):
         if len(self._cameras) % self._views:
             raise UsageError(f"views={self._views}: does not divide the {len(self._cameras)} cameras of the path; "
                              f"expected the same number of views of every moment")
+        self._first_frame = arguments.whole_within("first_frame", first_frame, 0, 100_000_000 - len(self._cameras))
         # Angle, number of samples, and the cameras of all instants; None if each frame is one moment.
         self._shutter: _core._Shutter = None
         if shutter is not None:
@@ -68,8 +74,9 @@ class Path(Sequence[Camera]):
                                                                 angle, samples))
 
     @classmethod
-    def _of(cls, cameras: Iterable[_core.RenderCamera], fps: float, shutter: _core._Shutter, views: int) -> Path:
-        path = cls((Camera._of(core) for core in cameras), fps, views=views)
+    def _of(cls, cameras: Iterable[_core.RenderCamera], fps: float, first_frame: int, shutter: _core._Shutter,
+            views: int) -> Path:
+        path = cls((Camera._of(core) for core in cameras), fps, views=views, first_frame=first_frame)
         path._shutter = shutter
         return path
 
@@ -85,8 +92,13 @@ class Path(Sequence[Camera]):
         return self._views
 
     @property
+    def first_frame(self) -> int:
+        """Number of the first frame, which is at time 0."""
+        return self._first_frame
+
+    @property
     def fps(self) -> float:
-        """Frames per second. Frame i, from 1, is at the time (i - 1) / fps."""
+        """Frames per second. Camera i of the path, from 0, is at the time i / fps."""
         return self._fps
 
     @fps.setter
@@ -113,8 +125,8 @@ class Path(Sequence[Camera]):
             The file cannot be read, has a mistake, or states another unit than `unit_m`.
         """
         unit = None if unit_m is None else arguments.positive("unit_m", unit_m)
-        cameras, fps, _, shutter, views = _core.read_path(arguments.file_name("path", path), unit)
-        return cls._of(cameras, fps, shutter, views)
+        cameras, fps, first_frame, shutter, views = _core.read_path(arguments.file_name("path", path), unit)
+        return cls._of(cameras, fps, first_frame, shutter, views)
 
     @classmethod
     def parse(cls, text: str, name: str = "path", unit_m: Optional[float] = None) -> Path:
@@ -122,9 +134,9 @@ class Path(Sequence[Camera]):
         # Text that is not Unicode cannot be in a path, and stands in messages with question marks.
         utf8, utf8_name = (arguments.text(what, value).encode("utf-8", "replace")
                            for what, value in (("text", text), ("name", name)))
-        cameras, fps, _, shutter, views = _core.parse_path(utf8, utf8_name, None if unit_m is None
-                                                           else arguments.positive("unit_m", unit_m))
-        return cls._of(cameras, fps, shutter, views)
+        unit = None if unit_m is None else arguments.positive("unit_m", unit_m)
+        cameras, fps, first_frame, shutter, views = _core.parse_path(utf8, utf8_name, unit)
+        return cls._of(cameras, fps, first_frame, shutter, views)
 
     def save(self, path: Union[str, os.PathLike[str]], format: Optional[str] = None) -> None:
         """Write a camera path file. Each frame gets a camera of its own. Only YAML keeps the shutter, and interpolates
@@ -154,7 +166,7 @@ class Path(Sequence[Camera]):
         file = arguments.file_name("path", path)
         if format is None and os.path.splitext(os.fsdecode(file))[1] not in (".json", ".chan", ".usda"):
             format = "yaml"
-        lost = _core.save_path(file, [camera._core for camera in self._cameras], self.fps,
+        lost = _core.save_path(file, [camera._core for camera in self._cameras], self.fps, self._first_frame,
                                self._shutter, self._views, None if format is None else arguments.text("format", format))
         if lost:
             warnings.warn(f"{os.fsdecode(file)}: the format has no place for {'; for '.join(lost)}", stacklevel=2)
@@ -182,7 +194,8 @@ class Path(Sequence[Camera]):
         if isinstance(i, slice):
             frames = range(len(self))[i]
             whole = frames.step == 1 and frames.start % self._views == 0 and len(frames) % self._views == 0
-            part = Path(self._cameras[i], self.fps, views=self._views if whole else 1)
+            part = Path(self._cameras[i], self.fps, views=self._views if whole else 1,
+                        first_frame=self._first_frame)
             if self._shutter is not None:
                 angle, samples, instants = self._shutter
                 part._shutter = (angle, samples, [instants[frame * samples + k]
@@ -195,12 +208,14 @@ class Path(Sequence[Camera]):
 
     def __eq__(self, other: object) -> bool:
         return (isinstance(other, Path) and self.fps == other.fps and self._cameras == other._cameras
-                and self._shutter == other._shutter and self._views == other._views)
+                and self._shutter == other._shutter and self._views == other._views
+                and self._first_frame == other._first_frame)
 
     def __repr__(self) -> str:
         shutter = "" if self._shutter is None else f", shutter {self._shutter[0]:g} degrees"
         views = "" if self._views == 1 else f", {self._views} views of each moment"
-        return f"<Path of {len(self)} frames, {self.fps:g} per second{shutter}{views}>"
+        first = "" if self._first_frame == 1 else f" from {self._first_frame} on"
+        return f"<Path of {len(self)} frames{first}, {self.fps:g} per second{shutter}{views}>"
 
 
 def _angle_and_samples(shutter: Union[Tuple[float, int], Mapping[str, Any]]) -> Tuple[float, int]:

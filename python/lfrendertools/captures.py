@@ -70,7 +70,7 @@ def forecast(field: LightField, path: Union[Path, Camera], frames: Frames = None
     path : Path or Camera
         The cameras of the frames.
     frames : str or iterable of int, optional
-        Frames to render, from 1; by default all.
+        Frames to render, by their numbers; by default all.
     depths : tuple of float, optional
         Nearest and farthest depth of the scene in world units. By default the depths of the calibration or, if it has
         none, depths that are estimated from LF images.
@@ -116,7 +116,7 @@ def write_packages(field: LightField, path: Union[Path, Camera], folder: FilePat
     count : int, optional
         Number of packages; by default as few as `memory` allows.
     frames : str or iterable of int, optional
-        Frames to pack, from 1; by default all.
+        Frames to pack, by their numbers; by default all.
     frames_per_package : int, optional
         Number of frames of a package, instead of `count`.
     balance : {"rays", "frames"}
@@ -364,6 +364,7 @@ def synth(scene: str, folder: FilePath, *, capture: str = "planar", count: Optio
         words.truth_cameras = [camera._core for camera in truth]
         if truth._shutter is not None:
             _, words.truth_instants, words.truth_cameras = truth._shutter
+        words.first_truth_frame = truth.first_frame
     file = b"" if truth is None or isinstance(truth, Path) else arguments.file_name("truth", truth)
     with telling(checked(progress), "files") as tell:
         _core.synth(words, file, arguments.thread_count(threads), tell)
@@ -400,7 +401,8 @@ def _preprocess(field: LightField, path: Union[Path, Camera], frames: Frames, wo
     with telling(progress, "steps") as tell:
         facts = _facts(_core.preprocess(
             field._core, os.fsencode(field.source), [camera._core for camera in cameras], cameras.fps,
-            cameras._shutter, frame_numbers(frames, len(cameras)), film, words, arguments.thread_count(threads), tell))
+            cameras.first_frame, cameras._shutter, frame_numbers(frames, cameras), film, words,
+            arguments.thread_count(threads), tell))
     return facts
 
 

@@ -13,7 +13,7 @@ from .camera import Camera
 from .camera_path import Path
 from .errors import UsageError, warn_of_missing
 from .light_field import LightField
-from .path_arguments import path_in
+from .path_arguments import index_of, path_in
 from .progress import Progress, checked, telling
 
 # Limits of lf/analysis/focus_stack/focus_planes.h and lf/analysis/depth/depth_map.h.
@@ -67,8 +67,8 @@ class DepthMap:
 
 def depth_map(field: LightField, camera: Union[Camera, Path], *, near: Optional[float] = None,
               far: Optional[float] = None, planes: Optional[int] = None, views: int = 200, window: int = 5,
-              confidence: float = 0.5, clean: bool = False, frame: int = 1, strict: bool = False, memory: str = "8G",
-              threads: int = 0, progress: Progress = None) -> DepthMap:
+              confidence: float = 0.5, clean: bool = False, frame: Optional[int] = None, strict: bool = False,
+              memory: str = "8G", threads: int = 0, progress: Progress = None) -> DepthMap:
     """Find the depth of every element of a frame by a plane sweep, as `lffocus depth`.
 
     Parameters
@@ -92,8 +92,8 @@ def depth_map(field: LightField, camera: Union[Camera, Path], *, near: Optional[
     clean : bool
         True: wrong and missing depths become the median of the depths of the elements of their colour around them, if
         most of these have about the same depth.
-    frame : int
-        Number of the frame of a path whose camera is used, from 1.
+    frame : int, optional
+        Number of the frame of a path whose camera is used. Default None: the first.
     strict : bool
         True: a broken LF image is an error; False: it is left out, with a warning.
     memory : str
@@ -121,7 +121,7 @@ def depth_map(field: LightField, camera: Union[Camera, Path], *, near: Optional[
     (60, 80)
     """
     cameras = path_in(field, camera)
-    chosen = cameras[arguments.whole_within("frame", frame, 1, len(cameras)) - 1]
+    chosen = cameras[index_of(frame, cameras)]
     width = arguments.whole_within("window", window, 1, _WIDEST)
     if width % 2 == 0:
         raise UsageError(f"window={width}: expected an odd number")

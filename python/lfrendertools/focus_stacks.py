@@ -13,7 +13,7 @@ from .camera import Camera
 from .camera_path import Path
 from .errors import UsageError
 from .light_field import LightField
-from .path_arguments import path_in
+from .path_arguments import index_of, path_in
 from .progress import Progress
 from .rendering import film
 
@@ -52,8 +52,8 @@ class FocusStack:
 
 
 def focus_stack(field: LightField, camera: Union[Camera, Path], distances: Optional[Iterable[float]] = None, *,
-                planes: int = 30, near: Optional[float] = None, far: Optional[float] = None, frame: int = 1,
-                progress: Progress = None, **options: Any) -> FocusStack:
+                planes: int = 30, near: Optional[float] = None, far: Optional[float] = None,
+                frame: Optional[int] = None, progress: Progress = None, **options: Any) -> FocusStack:
     """Render pictures of one camera that differ only in their focus distance, as `lffocus stack`.
 
     LF images are read once for all planes that fit in the memory together.
@@ -71,8 +71,8 @@ def focus_stack(field: LightField, camera: Union[Camera, Path], distances: Optio
     near, far : float, optional
         Nearest and farthest focus distance. By default the depths of the scene that the light field states; if it
         states none, LF images are compared.
-    frame : int
-        Number of the frame of a path whose camera is used, from 1.
+    frame : int, optional
+        Number of the frame of a path whose camera is used. Default None: the first.
     progress : bool or callable, optional
         As for :func:`render`.
     **options
@@ -101,7 +101,8 @@ def focus_stack(field: LightField, camera: Union[Camera, Path], distances: Optio
     ((4, 60, 80, 3), [0.5, 0.667, 1.0, 2.0])
     """
     cameras = path_in(field, camera)
-    chosen = cameras[arguments.whole_within("frame", frame, 1, len(cameras)) - 1]._core
+    index = index_of(frame, cameras)
+    chosen = cameras[index]._core
     if distances is None:
         found = _even_distances(field, chosen, planes, near, far, options)
     elif near is not None or far is not None or planes != 30:
@@ -109,7 +110,7 @@ def focus_stack(field: LightField, camera: Union[Camera, Path], distances: Optio
     else:
         found = _checked(distances)
     stack = Path([Camera._of(_core.focused_at(chosen, distance)) for distance in found], cameras.fps)
-    shutter = cameras[frame - 1:frame]._shutter
+    shutter = cameras[index:index + 1]._shutter
     if shutter is not None:  # all planes are exposed while the camera moves as in this frame
         stack._shutter = (*shutter[:2], [_core.focused_at(instant, distance) for distance in found
                                          for instant in shutter[2]])

@@ -29,7 +29,7 @@ class Frame:
 
     @property
     def number(self) -> int:
-        """Number of the frame in its path, from 1."""
+        """Number of the frame in its path."""
         return self._core.number
 
     @property

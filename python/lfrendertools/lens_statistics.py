@@ -10,7 +10,7 @@ from .camera_path import Path
 from .errors import UsageError, warn_of_missing
 from .frames import Frame
 from .light_field import LightField
-from .path_arguments import path_in
+from .path_arguments import index_of, path_in
 from .progress import Progress, checked, telling
 
 _STATISTICS = ("median", "trimmed", "min", "max", "mean")
@@ -19,7 +19,7 @@ _TRIM = 0.25
 
 
 def through(field: LightField, camera: Union[Camera, Path], statistic: str = "median", trim: float = _TRIM,
-            order: str = "channels", *, frame: int = 1, filter: str = "auto", lf_pixels: str = "auto",
+            order: str = "channels", *, frame: Optional[int] = None, filter: str = "auto", lf_pixels: str = "auto",
             max_angle_deg: Optional[float] = None, strict: bool = False, memory: str = "8G", threads: int = 0,
             progress: Progress = None) -> Frame:
     """See through leaves and rain: make a frame by a statistic over the lens, as `lffocus through`.
@@ -45,8 +45,8 @@ def through(field: LightField, camera: Union[Camera, Path], statistic: str = "me
     order : {"channels", "luminance"}
         Values that are sorted: each colour by itself, so that a colour may be one that no ray has; or whole rays by
         their luminance. Default "channels".
-    frame : int
-        Number of the frame of a path that is made, from 1.
+    frame : int, optional
+        Number of the frame of a path that is made. Default None: the first.
     filter : {"auto", "nearest", "bilinear", "bicubic", "prefiltered"}
         Interpolation between LF pixels. Default "auto": "bilinear" for "min" and "max", because other filters
         undershoot and overshoot beside edges; "bicubic" for brackets; otherwise "prefiltered".
@@ -89,7 +89,7 @@ def through(field: LightField, camera: Union[Camera, Path], statistic: str = "me
     ((60, 80, 3), 'trimmed')
     """
     cameras = path_in(field, camera)
-    number = arguments.whole_within("frame", frame, 1, len(cameras))
+    index = index_of(frame, cameras)
     if cameras.shutter is not None:
         raise UsageError("the path has a shutter, whose blur has no share in an order of rays: leave the shutter out")
     arguments.choice("statistic", statistic, _STATISTICS)
@@ -102,7 +102,7 @@ def through(field: LightField, camera: Union[Camera, Path], statistic: str = "me
     angle = None if max_angle_deg is None else arguments.positive("max_angle_deg", max_angle_deg, 180)
     with telling(checked(progress), "LF images") as tell:
         made, skipped = _core.through(
-            field._core, number, cameras[number - 1]._core, cameras.fps, statistic, share,
+            field._core, cameras.first_frame + index, cameras[index]._core, cameras.fps, statistic, share,
             arguments.choice("order", order, ("channels", "luminance")), arguments.choice("filter", filter, _FILTERS),
             arguments.choice("lf_pixels", lf_pixels, ("auto", "areas", "points")), angle,
             arguments.flag("strict", strict), arguments.memory(memory), arguments.thread_count(threads), tell)

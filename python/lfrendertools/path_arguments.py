@@ -2,7 +2,7 @@
 """Checks of the arguments `path` and `frames`, which several functions share."""
 from __future__ import annotations
 
-from typing import Iterable, List, Union
+from typing import Iterable, List, Optional, Union
 
 from . import _core, arguments
 from .camera import Camera
@@ -27,16 +27,24 @@ def path_in(field: LightField, path: Union[Path, Camera]) -> Path:
     return cameras
 
 
-def frame_numbers(frames: Frames, count: int) -> List[int]:
+def frame_numbers(frames: Frames, path: Path) -> List[int]:
     """Return ascending numbers of frames."""
     if frames is None:
         return []
     if isinstance(frames, str):
-        return _core.parse_frames(frames, count)
+        return _core.parse_frames(frames, path.first_frame, len(path))
     try:
         numbers = {arguments.whole("frames", number) for number in frames}
     except TypeError:
         raise TypeError(f"frames={frames!r}: expected a list of numbers, or a string such as \"1-10,20\"") from None
-    if not numbers or min(numbers) < 1 or max(numbers) > count:
-        raise UsageError(f"frames={frames!r}: the path has the frames 1 to {count}")
+    last = path.first_frame + len(path) - 1
+    if not numbers or min(numbers) < path.first_frame or max(numbers) > last:
+        raise UsageError(f"frames={frames!r}: the path has the frames {path.first_frame} to {last}")
     return sorted(numbers)
+
+
+def index_of(frame: Optional[int], path: Path) -> int:
+    """Return the index of a frame in the path, from 0; None means the first frame."""
+    if frame is None:
+        return 0
+    return arguments.whole_within("frame", frame, path.first_frame, path.first_frame + len(path) - 1) - path.first_frame

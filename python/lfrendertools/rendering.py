@@ -18,7 +18,7 @@ from .errors import BlackFrameWarning, UsageError, warn_of_missing
 from .film_options import film_words
 from .frames import Frame, Plate
 from .light_field import LightField
-from .path_arguments import Frames, frame_numbers, path_in
+from .path_arguments import Frames, frame_numbers, index_of, path_in
 from .progress import Progress, TellPhase, checked, telling
 
 
@@ -32,7 +32,7 @@ class Renderer:
     path : Path or Camera
         The cameras of the frames.
     frames : str or iterable of int, optional
-        Frames to render, from 1: "1-10,20", "1-100x10", or numbers; by default all.
+        Frames to render, by their numbers: "1-10,20", "1-100x10", or numbers; by default all.
     mode : {"collect", "rebin", "hybrid"}
         How frames are made from recorded rays (doc/rebinning.md). Default "collect".
     estimator : {"auto", "nearest", "bilinear"}
@@ -267,7 +267,8 @@ def render(field: LightField, camera: Union[Camera, Path], *, progress: Progress
     ((60, 80, 3), dtype('float32'), dtype('uint8'))
     """
     told, frames = checked(progress), options.pop("frames", None)
-    film_of_one = _Film(field, camera, [1] if frames is None else frames, options)
+    first = camera.first_frame if isinstance(camera, Path) else 1
+    film_of_one = _Film(field, camera, [first] if frames is None else frames, options)
     passes = film_of_one.core.passes()
     if sum(map(len, passes)) != 1:
         raise UsageError("render() renders one frame: use film() for several")
@@ -291,7 +292,7 @@ def film(field: LightField, path: Path, frames: Frames = None, *, progress: Prog
     path : Path
         The cameras.
     frames : str or iterable of int, optional
-        Frames to render, from 1: "1-10,20", "1-100x10", or numbers; by default all.
+        Frames to render, by their numbers: "1-10,20", "1-100x10", or numbers; by default all.
     progress : bool or callable, optional
         As for :func:`render`.
     **options
@@ -353,7 +354,8 @@ class Selection:
     neighbours: npt.NDArray[np.uint32]
 
 
-def select(field: LightField, camera: Union[Camera, Path], frame: int = 1, **options: Any) -> Selection:
+def select(field: LightField, camera: Union[Camera, Path], frame: Optional[int] = None,
+           **options: Any) -> Selection:
     """Return the LF images that a frame reads, without reading them.
 
     Parameters
@@ -362,8 +364,8 @@ def select(field: LightField, camera: Union[Camera, Path], frame: int = 1, **opt
         The light field.
     camera : Camera or Path
         The camera, or a path.
-    frame : int
-        Number of the frame in the path, from 1.
+    frame : int, optional
+        Number of the frame in the path. Default None: the first.
     **options
         Options of :class:`Renderer`.
 
@@ -380,8 +382,8 @@ def select(field: LightField, camera: Union[Camera, Path], frame: int = 1, **opt
     (True, 4)
     """
     cameras = path_in(field, camera)
-    number = arguments.whole_within("frame", frame, 1, len(cameras))
-    return Selection(*_Film(field, cameras[number - 1:number], None, options).core.needs(1))
+    index = index_of(frame, cameras)
+    return Selection(*_Film(field, cameras[index:index + 1], None, options).core.needs(cameras.first_frame))
 
 
 class _Film:
@@ -391,9 +393,10 @@ class _Film:
         cameras = path_in(field, path)
         own: Dict[str, Any] = {"memory": "8G", "strict": False, "threads": 0}
         words = film_words(options, own)
-        self.core = _core.Film(field._core, [camera._core for camera in cameras], cameras.fps, cameras._shutter,
-                               frame_numbers(frames, len(cameras)), words, arguments.memory(own["memory"]),
-                               arguments.flag("strict", own["strict"]), arguments.thread_count(own["threads"]))
+        self.core = _core.Film(field._core, [camera._core for camera in cameras], cameras.fps,
+                               cameras.first_frame, cameras._shutter, frame_numbers(frames, cameras), words,
+                               arguments.memory(own["memory"]), arguments.flag("strict", own["strict"]),
+                               arguments.thread_count(own["threads"]))
         self._warned: List[str] = []
         self._done = 0
 

@@ -149,7 +149,7 @@ py::tuple TupleOf(const CameraPath& path) {
   ShutterWords shutter;
   if (path.shutter.exists())
     shutter.emplace(path.shutter.angle_deg, path.shutter.samples, path.instants);
-  return py::make_tuple(path.cameras, path.fps, path.unit_m, shutter, path.views);
+  return py::make_tuple(path.cameras, path.fps, path.first_frame, shutter, path.views);
 }
 
 // Returns the instants of a shutter, which are interpolated between the cameras of the frames.
@@ -160,7 +160,7 @@ std::vector<RenderCamera> InstantsOf(std::vector<RenderCamera> cameras, double f
       Take(Result<void>(UsageError(
           "shutter: a camera has a focal surface, whose depths are seen from one moment only: use "
           "cameras without surfaces, or no shutter")));
-  CameraPath path = PathOf(std::move(cameras), fps, 1, {});
+  CameraPath path = PathOf(std::move(cameras), fps, 1, 1, {});
   Take(AddShutter({angle_deg, samples}, &path));
   return path.instants;
 }
@@ -186,8 +186,8 @@ py::tuple ReadPath(const std::string& file, std::optional<double> unit_m) {
 // Writes a path file in a format, or in the one of the file's extension. Returns what other
 // programs do not find in the file.
 std::vector<std::string> SavePath(const std::string& file, const std::vector<RenderCamera>& cameras,
-                                  double fps, const ShutterWords& shutter, int views,
-                                  const std::optional<std::string>& name) {
+                                  double fps, uint32_t first_frame, const ShutterWords& shutter,
+                                  int views, const std::optional<std::string>& name) {
   return CallWithoutGil([&]() -> std::vector<std::string> {
     for (const RenderCamera& camera : cameras)
       if (camera.surface)
@@ -203,7 +203,7 @@ std::vector<std::string> SavePath(const std::string& file, const std::vector<Ren
           "\"nerfstudio\", \"instant-ngp\", \"chan\" or \"usda\"{}",
           file, name ? fmt::format(", found \"{}\"", *name) : ""))));
     Take(CheckReplacesPath(file));
-    CameraPath path = PathOf(cameras, fps, cameras.front().unit_m, shutter);
+    CameraPath path = PathOf(cameras, fps, first_frame, cameras.front().unit_m, shutter);
     path.views = views;
     // Each format states or computes the times itself.
     path.cameras = cameras;
@@ -220,10 +220,11 @@ std::vector<std::string> SavePath(const std::string& file, const std::vector<Ren
 
 }  // namespace
 
-CameraPath PathOf(std::vector<RenderCamera> cameras, double fps, double unit_m,
-                  ShutterWords shutter) {
+CameraPath PathOf(std::vector<RenderCamera> cameras, double fps, uint32_t first_frame,
+                  double unit_m, ShutterWords shutter) {
   CameraPath path;
   path.fps = fps;
+  path.first_frame = first_frame;
   path.unit_m = unit_m;
   path.cameras = std::move(cameras);
   for (size_t i = 0; i < path.cameras.size(); ++i)

@@ -4,6 +4,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <cstdint>
 #include <optional>
 #include <tuple>
 #include <vector>
@@ -16,8 +17,8 @@ namespace lf::python {
 using ShutterWords = std::optional<std::tuple<double, int, std::vector<RenderCamera>>>;
 
 // Returns a path of these cameras. Their place in the path decides their time.
-CameraPath PathOf(std::vector<RenderCamera> cameras, double fps, double unit_m,
-                  ShutterWords shutter);
+CameraPath PathOf(std::vector<RenderCamera> cameras, double fps, uint32_t first_frame,
+                  double unit_m, ShutterWords shutter);
 
 void AddCameras(pybind11::module_& module);
 

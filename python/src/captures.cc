@@ -113,9 +113,10 @@ PreprocessOptions PreprocessOptionsOf(const PackageWords& words, const SettingWo
 
 // Makes packages, or only forecasts their render. Returns the report of lfpreprocessor as JSON.
 std::string Preprocess(const OpenedField& field, const std::string& name,
-                       std::vector<RenderCamera> cameras, double fps, ShutterWords shutter,
-                       const std::vector<uint32_t>& frames, const SettingWords& film,
-                       const PackageWords& words, int threads, const Tell& tell) {
+                       std::vector<RenderCamera> cameras, double fps, uint32_t first_frame,
+                       ShutterWords shutter, const std::vector<uint32_t>& frames,
+                       const SettingWords& film, const PackageWords& words, int threads,
+                       const Tell& tell) {
   ThreadPool& pool = PoolOf(threads);
   ToldWork work(tell);
   const LightField& light_field = field.light_field;
@@ -127,7 +128,7 @@ std::string Preprocess(const OpenedField& field, const std::string& name,
   return CallWithoutGil(
       [&] {
         const CameraPath path =
-            PathOf(std::move(cameras), fps, light_field.unit_m, std::move(shutter));
+            PathOf(std::move(cameras), fps, first_frame, light_field.unit_m, std::move(shutter));
         ForecastFacts facts;
         facts.light_field = name;
         facts.output = words.output;
@@ -239,6 +240,7 @@ void Synthesise(SyntheticFieldOptions options, const std::string& truth, int thr
               OpenPath(truth, {.light_field_unit_m = 1.0, .surface = PathOptions::Surface::kMake}));
           options.truth_cameras.assign(path.AllInstants().begin(), path.AllInstants().end());
           options.truth_instants = path.shutter.samples;
+          options.first_truth_frame = path.first_frame;
           options.inputs = FilesOfPath(truth);
         }
         Take(WriteSyntheticField(options, pool, [&](size_t done, size_t total, bool is_truth) {
@@ -306,6 +308,7 @@ void AddCaptures(py::module_& module) {
       .def_readwrite("alpha", &SyntheticFieldOptions::alpha)
       .def_readwrite("truth_cameras", &SyntheticFieldOptions::truth_cameras)
       .def_readwrite("truth_instants", &SyntheticFieldOptions::truth_instants)
+      .def_readwrite("first_truth_frame", &SyntheticFieldOptions::first_truth_frame)
       .def_readwrite("size", &SyntheticFieldOptions::size_px)
       .def_readwrite("count", &SyntheticFieldOptions::count)
       .def_readwrite("spacing", &SyntheticFieldOptions::spacing)

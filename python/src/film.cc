@@ -38,8 +38,8 @@ namespace py = pybind11;
 class Film {
  public:
   Film(const OpenedField& field, std::vector<RenderCamera> cameras, double fps,
-       ShutterWords shutter, const std::vector<uint32_t>& frames, const SettingWords& words,
-       const std::string& memory, bool strict, int threads)
+       uint32_t first_frame, ShutterWords shutter, const std::vector<uint32_t>& frames,
+       const SettingWords& words, const std::string& memory, bool strict, int threads)
       : pool_(PoolOf(threads)) {
     RenderOptions options;
     options.film = Take(FilmSettingsOf(words));
@@ -50,10 +50,10 @@ class Film {
     std::vector<FrameId> ids;
     for (const uint32_t frame : frames) ids.push_back(FrameId{frame});
     Run([&] {
-      Package package = Take(PackageOfFilm(
-          field.light_field,
-          PathOf(std::move(cameras), fps, field.light_field.unit_m, std::move(shutter)), options,
-          pool_));
+      Package package = Take(PackageOfFilm(field.light_field,
+                                           PathOf(std::move(cameras), fps, first_frame,
+                                                  field.light_field.unit_m, std::move(shutter)),
+                                           options, pool_));
       setup_ = Take(FilmSetup::Make(std::move(package), options.film, options.work, ids, pool_));
       if (const std::string note = setup_->ReferenceNote(); !note.empty()) LogInfo("{}", note);
       Take(setup_->PlanSlabs());
@@ -186,9 +186,9 @@ class Film {
   std::unique_ptr<FilmRenderer> renderer_;
 };
 
-std::vector<uint32_t> ParseFrames(const std::string& text, size_t frame_count) {
+std::vector<uint32_t> ParseFrames(const std::string& text, uint32_t first, size_t count) {
   std::vector<uint32_t> numbers;
-  for (const FrameId frame : Take(ParseFrameRange(text, frame_count, "frames")))
+  for (const FrameId frame : Take(ParseFrameRange(text, {first, count}, "frames")))
     numbers.push_back(frame.value);
   return numbers;
 }
@@ -208,7 +208,7 @@ void AddFilm(py::module_& module) {
   module.def("parse_frames", &ParseFrames);
   module.def("encode_png", &PngOf);
   py::class_<Film>(module, "Film")
-      .def(py::init<const OpenedField&, std::vector<RenderCamera>, double, ShutterWords,
+      .def(py::init<const OpenedField&, std::vector<RenderCamera>, double, uint32_t, ShutterWords,
                     const std::vector<uint32_t>&, const SettingWords&, const std::string&, bool,
                     int>())
       .def("passes", &Film::Passes)

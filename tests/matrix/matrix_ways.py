@@ -17,7 +17,7 @@ import numpy as np
 
 from exr_file import read_header
 from matrix_world import (BROKEN, FRAMES, MISSING, MODES, MOST_IMAGES, OF_FILES, Difference,
-                          ProgramFailed, World, is_flawed, is_of_packages, last_line, once,
+                          ProgramFailed, World, frames_of, is_flawed, is_of_packages, last_line, once,
                           packaged_input, run)
 
 SHARDS = 2
@@ -197,7 +197,7 @@ class Matrix(World):
         out = folder / "out"
         self.make("lfrenderer", light_field, self.path_of(cell.field), "-o", out,
                   "--no-contact-sheet", *MODES[cell.mode])
-        pixels = {frame: pixels_of(out / f"frame_{frame:04d}.exr") for frame in range(1, FRAMES + 1)}
+        pixels = {frame: pixels_of(out / f"frame_{frame:04d}.exr") for frame in frames_of(cell.field)}
         shutil.rmtree(folder)
         return pixels
 
@@ -208,7 +208,8 @@ class Matrix(World):
         steps = self.steps(cell, out)
         if shall_be_refused:
             finishes = cell.run == "finish" and cell.cut != "lfsubmit"  # lfsubmit is refused when the job is submitted
-            finish = ["--resume", "--finish", f"1-{FRAMES}"] if finishes else []
+            numbers = frames_of(cell.field)
+            finish = ["--resume", "--finish", f"{numbers[0]}-{numbers[-1]}"] if finishes else []
             return self.ended(cell, out, [step._replace(words=[*step.words, *finish])
                                           for step in steps])
         if cell.run in ("killed", "noise killed"):
@@ -302,7 +303,8 @@ class Matrix(World):
         pictures = {int(path.stem[6:]): pixels_of(path)
                     for path in out.glob("partial/**/frame_*.exr")}
         begun = sorted({int(path.stem[6:]) for path in out.glob("partial/**/frame_*.plate")})
-        frames = ",".join(map(str, begun)) or f"1-{FRAMES}"
+        numbers = frames_of(cell.field)
+        frames = ",".join(map(str, begun)) or f"{numbers[0]}-{numbers[-1]}"
         if cell.cut == "lfsubmit":
             if not begun:  # rebinned rays belong to all frames of their package
                 job = json.loads((out / "cluster" / "job.json").read_text())

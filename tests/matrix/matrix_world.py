@@ -77,6 +77,16 @@ SHAPES = {
 }
 
 
+# Numbers of the first frames of the films of fields; 1 of others.
+FIRST_FRAMES = {"falloff": 1001, "shutter": 0, "depths": 1001}
+
+
+def frames_of(field):
+    """Returns the numbers of the frames of the film of a field."""
+    first = FIRST_FRAMES.get(field, 1)
+    return range(first, first + FRAMES)
+
+
 class Difference(Exception):
     """The result of a cell differs from the required one."""
 
@@ -165,11 +175,11 @@ def write_pfm(file, values):
 def write_surfaces(folder, field):
     """Writes the pictures that SURFACES names. They have steps, waves and unknown places."""
     if field == "depths":
-        for frame in range(1, FRAMES + 1):
+        for frame, number in enumerate(frames_of(field), 1):
             y, x = np.mgrid[0:120, 0:160]
             depths = 1.1 + 0.3 * np.sin(x / 25 + frame) * np.cos(y / 31) - np.where(x > 60 + 5 * frame, 0.4, 0)
             depths[40:50, 100:120] = np.inf
-            write_pfm(folder / f"depth_{frame}.pfm", depths)
+            write_pfm(folder / f"depth_{number}.pfm", depths)
     if field == "heights":
         y, x = np.mgrid[0:21, 0:25]
         heights = 0.25 * np.sin(x / 3) * np.cos(y / 2)
@@ -242,6 +252,8 @@ class World:
         path = self.folder_of(field).parent / "path.yaml"
         write_surfaces(path.parent, field)
         clock, camera, lens = SHAPES.get(field, ("", "", ""))
+        if field in FIRST_FRAMES:
+            clock += f"\nfirst_frame: {FIRST_FRAMES[field]}"
         path.write_text(PATH_YAML.format(frames=FRAMES, first=0 if has_pinhole else 0.012,
                                          last=0.015 if has_pinhole else 0.02, clock=clock, camera=camera,
                                          lens=lens, focus=SURFACES.get(field, "")))

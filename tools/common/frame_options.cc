@@ -19,8 +19,8 @@ std::vector<CLI::Option*> FrameRangeArguments::AddTo(OptionGroup& output, const 
       output
           .Add("--frames RANGE", range,
                fmt::format("Frames to {}, such as 1-100x2, 7 or 3-5,9 (all)\n"
-                           "1-100x2, 1-100:2: every second frame of 1 to 100. Frames are counted "
-                           "from 1.",
+                           "1-100x2, 1-100:2: every second frame of 1 to 100. They are the "
+                           "numbers of the path, which count from 1 or its first_frame.",
                            use))
           ->check(NotEmpty());
   CLI::Option* const clamps = output.AddFlag(
@@ -32,9 +32,9 @@ std::vector<CLI::Option*> FrameRangeArguments::AddTo(OptionGroup& output, const 
   return {frames, clamps};
 }
 
-Result<std::vector<FrameId>> FrameRangeArguments::Of(size_t frame_count) const {
+Result<std::vector<FrameId>> FrameRangeArguments::Of(const FrameNumbers& all) const {
   if (range.empty()) return std::vector<FrameId>();
-  return ParseFrameRange(range, frame_count, "--frames",
+  return ParseFrameRange(range, all, "--frames",
                          clamp ? FramesBeyondEnd::kLeftOut : FramesBeyondEnd::kError);
 }
 

@@ -8,6 +8,7 @@
 
 #include "tools/common/help.h"
 
+#include "lf/core/frame_numbers.h"
 #include "lf/core/ids.h"
 #include "lf/core/result.h"
 #include "lf/film/develop/frame_file.h"
@@ -26,7 +27,7 @@ struct FrameRangeArguments {
                                   const std::string& if_none);
   // Returns the frames in ascending order. Empty if the range is empty, which means all frames, and
   // if no frame is left, which IsNone() tells apart. kUsage: as for ParseFrameRange().
-  Result<std::vector<FrameId>> Of(size_t frame_count) const;
+  Result<std::vector<FrameId>> Of(const FrameNumbers& all) const;
   // Returns true if no frame of the range is left. The caller must then do nothing, tell so by
   // TellNone(), and end without an error.
   bool IsNone(const std::vector<FrameId>& frames) const { return !range.empty() && frames.empty(); }

@@ -111,12 +111,11 @@ LivePlan PlanLiveExport(PageScene& scene, std::span<const uint32_t> used, size_t
   if (plan.refused.empty() && most_bytes == 0) plan.refused = "--export-live 0 leaves them out";
   if (!plan.refused.empty()) return plan;
   const PathFrames& path = *scene.first_draft()->path;
-  if (path.Camera(FrameId{1})->transmission) {
+  if (path.Camera(path.frames().At(0))->transmission) {
     plan.refused = "the lens has a transmission";
     return plan;
   }
-  const RenderCamera frame =
-      *path.Camera(FrameId{static_cast<uint32_t>(path.frame_count() / 2 + 1)});
+  const RenderCamera frame = *path.Camera(path.frames().At(path.frame_count() / 2));
   plan.ids = SpreadOut(field, used, frame);
   plan.divisor =
       DivisorFor(scene.index(), WithPlateWidth(frame, kPictureWidth_px, 2 * kPictureWidth_px), 0);

@@ -132,7 +132,7 @@ Result<ExportFacts> ExportPage(PageScene& scene, const fs::path& folder, size_t 
   PathDraft& draft = *scene.first_draft();
   const std::string base = fmt::format("path/{}/", draft.id);
   const std::shared_ptr<FilmUse> film = scene.FilmOf(draft);
-  const std::vector<FrameId> frames = ShownFrames(draft.path->frame_count());
+  const std::vector<FrameId> frames = ShownFrames(draft.path->frames());
   const size_t frame_count = frames.size();
   if (frame_count < draft.path->frame_count())
     LogWarning("{}: the film has {} frames: the export shows {} of them: every {}-th, and the last",

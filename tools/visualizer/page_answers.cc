@@ -83,7 +83,7 @@ PageAnswer OfBlock(const PathDraft& draft, const Name& name) {
   if (!number || name.parts.size() != 4 || name.ending != ".bin") return NotFound();
   std::vector<FrameId> frames;
   for (size_t i = *number * kFramesPerBlock; i < frame_count; ++i) {
-    frames.push_back(FrameId{static_cast<uint32_t>(i + 1)});
+    frames.push_back(draft.path->frames().At(i));
     if (frames.size() == kFramesPerBlock) break;
   }
   return BytesAnswer(FramesBytes(*draft.path, frames));
@@ -92,7 +92,8 @@ PageAnswer OfBlock(const PathDraft& draft, const Name& name) {
 PageAnswer OfFrame(PageScene& scene, PathDraft& draft, const Name& name) {
   const std::string& kind = name.parts[2];
   if (kind == "frames") return OfBlock(draft, name);
-  const auto frame_number = NumberOf(name.parts[3], 1, draft.path->frame_count() + 1);
+  const FrameNumbers all = draft.path->frames();
+  const auto frame_number = NumberOf(name.parts[3], all.first, size_t{all.last()} + 1);
   if (!frame_number) return NotFound();
   const FrameId frame{*frame_number};
   if (name.parts.size() == 4 && kind == "use" && name.ending == ".bin")
@@ -115,7 +116,7 @@ PageAnswer OfPath(PageScene& scene, const Name& name) {
   if (file == "path.json") return JsonAnswer(PathHeadJson(*draft));
   if (file == "path.yaml") return {200, "text/plain; charset=utf-8", draft->text};
   if (file == "frames.bin")
-    return BytesAnswer(FramesBytes(*draft->path, ShownFrames(draft->path->frame_count())));
+    return BytesAnswer(FramesBytes(*draft->path, ShownFrames(draft->path->frames())));
   if (file == "film.json") return JsonAnswer(FilmJson(scene.FilmOf(*draft)->Get()));
   if (file == "film.bin") return BytesAnswer(FilmUseBytes(scene.FilmOf(*draft)->Get()));
   return NotFound();

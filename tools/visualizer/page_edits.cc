@@ -40,7 +40,7 @@ double NumberOf(const Json& json, const char* key) {
 
 std::optional<FrameId> FrameOf(const Json& json, const PathFrames& path) {
   const double number = NumberOf(json, "frame");
-  if (!(number >= 1 && number <= static_cast<double>(path.frame_count()))) return std::nullopt;
+  if (!(number >= path.frames().first && number <= path.frames().last())) return std::nullopt;
   return FrameId{static_cast<uint32_t>(number)};
 }
 

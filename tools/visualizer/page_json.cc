@@ -87,10 +87,11 @@ PageAnswer Refusal(const Error& error) {
 
 std::string PathHeadJson(const PathDraft& draft) {
   const PathFrames& path = *draft.path;
-  const RenderCamera first = *path.Camera(FrameId{1});
+  const RenderCamera first = *path.Camera(path.frames().At(0));
   const Intrinsics& k = first.pinhole.intrinsics;
   Json head = {{"id", draft.id},
                {"frames", path.frame_count()},
+               {"first_frame", path.frames().first},
                {"shown_step", ShownStep(path.frame_count())},
                {"fps", path.fps()},
                {"unit_m", path.unit_m()},

@@ -107,13 +107,12 @@ Result<std::string> PreviewRender::RenderFrame(const Wish& wish) {
   FilmSettings film = SettingsOf(arguments, light_field.encoding);
   // The frame is rendered as a film of its own.
   LF_ASSIGN_OR_RETURN(CameraPath path, wish.path->Some(wish.frame, 1));
-  constexpr FrameId kAlone{1};
   if (path.focal_surface) {
     path.focal_surface->file = FileOfFrame(*path.focal_surface, wish.frame.value);
     film.guard = false;  // frames with a focal surface cannot be guarded
   }
   LF_RETURN_IF_ERROR(
-      AddFocalSurfaces(arguments.path, light_field, {{kAlone}, &pool_, &interrupted_}, &path));
+      AddFocalSurfaces(arguments.path, light_field, {{wish.frame}, &pool_, &interrupted_}, &path));
   RenderOptions options;
   options.film = std::move(film);
   options.work.memory_bytes = kMemory_bytes;
@@ -122,7 +121,7 @@ Result<std::string> PreviewRender::RenderFrame(const Wish& wish) {
                       PackageOfFilm(std::move(light_field), std::move(path), options, pool_));
   LF_ASSIGN_OR_RETURN(
       const std::unique_ptr<FilmRenderer> renderer,
-      FilmRenderer::Open(std::move(package), options.film, options.work, {kAlone}, pool_));
+      FilmRenderer::Open(std::move(package), options.film, options.work, {wish.frame}, pool_));
   LF_RETURN_IF_ERROR(renderer->CheckAnyContributes());
   Clock::time_point next_picture = Clock::now();  // the first picture is made at once
   for (bool is_going_on = true; is_going_on;) {

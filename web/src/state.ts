@@ -4,15 +4,16 @@
 
 import { readFrames, type FrameCamera } from "./data/frame_camera";
 import { readFrameUse, type FrameUse } from "./data/frame_use";
-import type {
-  CameraFacts,
-  DensityFacts,
-  FilmFacts,
-  PathHead,
-  PathNews,
-  RenderFacts,
-  SceneFacts,
-  Vec3,
+import {
+  lastFrame,
+  type CameraFacts,
+  type DensityFacts,
+  type FilmFacts,
+  type PathHead,
+  type PathNews,
+  type RenderFacts,
+  type SceneFacts,
+  type Vec3,
 } from "./data/scene";
 import { getBytes, getJson, getText, post, SourceError } from "./data/source";
 import { History } from "./path/history";
@@ -117,7 +118,14 @@ export class State {
     return this.frames?.shown ?? [];
   }
   get time(): number {
-    return (this.frame - 1) / this.path.fps;
+    return (this.frame - this.path.first_frame) / this.path.fps;
+  }
+  get lastFrame(): number {
+    return lastFrame(this.path);
+  }
+  // Returns the number of the frame nearest to a time in seconds.
+  frameAt(time: number): number {
+    return this.path.first_frame + Math.round(time * this.path.fps);
   }
   // True if `frames` are those of the document as it is now.
   get isShown(): boolean {
@@ -144,7 +152,7 @@ export class State {
   private async take(head: PathHead, text: string): Promise<void> {
     const number = ++this.taking;
     const frames = new PathFrames(head, readFrames(await getBytes(`path/${head.id}/frames.bin`)));
-    const frame = () => Math.min(this.wanted, head.frames);
+    const frame = () => Math.max(head.first_frame, Math.min(this.wanted, lastFrame(head)));
     while (number === this.taking && !frames.camera(frame())) await frames.load(frame());
     if (number !== this.taking) return; // a later edit was faster
     this.path = head;
@@ -284,7 +292,7 @@ export class State {
   // ----------------------------------------------------------------------------------- the frame
 
   setFrame(frame: number): void {
-    let wanted = Math.max(1, Math.min(this.path.frames, Math.round(frame)));
+    let wanted = Math.max(this.path.first_frame, Math.min(this.lastFrame, Math.round(frame)));
     // An export has the shown frames only.
     if (!this.scene.server) wanted = this.frames!.frameOf(this.frames!.indexOf(wanted));
     if (wanted === this.wanted) return;

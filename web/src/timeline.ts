@@ -47,8 +47,8 @@ export class Timeline {
     this.allRows = this.makeRows();
     this.play.addEventListener("click", () => this.toggle());
     this.range.addEventListener("input", () => state.setFrame(Number(this.range.value)));
-    byId("first").addEventListener("click", () => state.setFrame(1));
-    byId("last").addEventListener("click", () => state.setFrame(state.path.frames));
+    byId("first").addEventListener("click", () => state.setFrame(state.path.first_frame));
+    byId("last").addEventListener("click", () => state.setFrame(state.lastFrame));
     this.listenForScrubs();
     new ResizeObserver(() => this.drawAll()).observe(this.canvas);
     state.on(["path", "film", "theme", "text"], () => this.drawAll());
@@ -129,12 +129,12 @@ export class Timeline {
   toggle(): void {
     if (this.playing) return this.stop();
     const { state } = this;
-    if (state.frame === state.path.frames) state.setFrame(1);
-    const begin = performance.now() - (1000 * (state.frame - 1)) / state.path.fps;
+    if (state.frame === state.lastFrame) state.setFrame(state.path.first_frame);
+    const begin = performance.now() - 1000 * state.time;
     const step = () => {
-      const frame = 1 + Math.floor(((performance.now() - begin) * state.path.fps) / 1000);
+      const frame = state.path.first_frame + Math.floor(((performance.now() - begin) * state.path.fps) / 1000);
       state.setFrame(frame);
-      if (frame >= state.path.frames) return this.stop();
+      if (frame >= state.lastFrame) return this.stop();
       this.playing = requestAnimationFrame(step);
     };
     this.playing = requestAnimationFrame(step);
@@ -174,13 +174,13 @@ export class Timeline {
       this.stop();
       const key = this.keyAt(event.offsetX, event.offsetY);
       this.dragged = key && { key, time: key.time };
-      state.setFrame(1 + Math.round((key?.time ?? this.timeOf(event.offsetX)) * state.path.fps));
+      state.setFrame(state.frameAt(key?.time ?? this.timeOf(event.offsetX)));
     });
     canvas.addEventListener("pointermove", (event) => {
       canvas.style.cursor = this.keyAt(event.offsetX, event.offsetY) ? "ew-resize" : "crosshair";
       if (event.buttons === 0) return;
       const time = this.timeOf(event.offsetX);
-      state.setFrame(1 + Math.round(time * state.path.fps));
+      state.setFrame(state.frameAt(time));
       if (this.dragged) {
         this.dragged.time = time;
         this.drawMark();
@@ -230,7 +230,8 @@ export class Timeline {
   private drawAll(): void {
     const { state, canvas } = this;
     if (state.cameras.length === 0) return;
-    this.range.max = String(state.path.frames);
+    this.range.min = String(state.path.first_frame);
+    this.range.max = String(state.lastFrame);
     const room = Math.floor(canvas.clientHeight / LEAST_HEIGHT);
     this.rows = this.allRows.filter((row) => row.rank < room);
     this.findKeys();
@@ -271,7 +272,7 @@ export class Timeline {
         isDown = false;
         continue;
       }
-      const x = this.xOf((this.state.frames!.frameOf(i) - 1) / this.state.path.fps);
+      const x = this.xOf((this.state.frames!.frameOf(i) - this.state.path.first_frame) / this.state.path.fps);
       if (isDown) context.lineTo(x, yOf(value));
       else context.moveTo(x, yOf(value));
       if (values.length === 1) context.lineTo(x + this.width(), yOf(value));
@@ -300,10 +301,10 @@ export class Timeline {
     this.rows.forEach((row, i) => context.fillText(row.text(), 8, i * height + height / 2 + 12));
     if (this.dragged) drawDiamond(context, this.xOf(this.dragged.time), this.dragged.key.y, cssColour("--text"));
     this.range.value = String(state.frame);
-    this.range.setAttribute("aria-valuetext", `frame ${state.frame} of ${state.path.frames}`);
+    this.range.setAttribute("aria-valuetext", `frame ${state.frame} of ${state.path.first_frame} to ${state.lastFrame}`);
     this.clock.replaceChildren(
       element("b", {}, `${state.frame}`),
-      ` / ${state.path.frames}`,
+      ` / ${state.lastFrame}`,
       element("span", {}, seconds(state.time)),
     );
   }

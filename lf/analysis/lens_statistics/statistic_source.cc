@@ -227,6 +227,7 @@ PlateNotes StatisticSource::NotesOf(size_t f) const {
   notes.camera = setup_.path().Camera(frame.id);
   notes.rays = frame.rays;
   notes.fps = setup_.path().fps;
+  notes.first_frame = setup_.path().first_frame;
   notes.develop = DevelopOptionsOf(setup_.light_field().encoding);
   notes.develop.adds_opacity = setup_.film().adds_opacity;
   for (const SkippedImage& image : skipped_)

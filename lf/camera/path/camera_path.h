@@ -10,6 +10,7 @@
 #include "lf/camera/path/focal_surface_source.h"
 #include "lf/camera/render_camera.h"
 #include "lf/core/check.h"
+#include "lf/core/frame_numbers.h"
 #include "lf/core/ids.h"
 
 namespace lf {
@@ -40,34 +41,34 @@ inline double InstantOffset(const Shutter& shutter, int instant) {
 struct CameraPath {
   double fps = 30;
   double unit_m = 1;                  // metres per world unit
-  std::vector<RenderCamera> cameras;  // one for each frame 1, 2, ...; frame 1 is at time 0
+  std::vector<RenderCamera> cameras;  // one for each frame; the first is at time 0
   Shutter shutter = {};
   // Number of views of each moment (view_cameras.h), which divides the number of frames: the first
   // frames are the views of the first moment, the next ones those of the second moment, and so on.
   // fps is then the rate of the moments. With more than 1, there is no shutter.
   int views = 1;
-  // The cameras of the instants, [frame - 1][instant]; empty if there is no shutter.
+  // The cameras of the instants, [index of the frame][instant]; empty if there is no shutter.
   std::vector<RenderCamera> instants = {};
   // The picture that the focal surfaces of the cameras are made of, if the file of the path names
   // it. The cameras have surfaces only if the path was opened to be rendered
   // (PathOptions::surface).
   std::optional<FocalSurfaceSource> focal_surface = {};
+  // Number of the first frame, for file names, options and messages; frames are counted on from
+  // there. The moments of a path with several views are counted from the same number.
+  uint32_t first_frame = 1;
 
+  FrameNumbers frames() const { return {first_frame, cameras.size()}; }
   size_t frame_count() const { return cameras.size(); }
   size_t moment_count() const { return cameras.size() / static_cast<size_t>(views); }
   // Returns the camera at the time of the frame, for metadata, previews and depths.
-  const RenderCamera& Camera(FrameId frame) const {
-    LF_CHECK(frame.value >= 1 && frame.value <= cameras.size());
-    return cameras[frame.value - 1];
-  }
+  const RenderCamera& Camera(FrameId frame) const { return cameras[frames().IndexOf(frame)]; }
   // Returns the cameras whose rays make the picture of the frame: those of its instants or, without
   // a shutter, Camera(frame) alone.
   std::span<const RenderCamera> Instants(FrameId frame) const {
     if (!shutter.exists()) return {&Camera(frame), 1};
     const auto count = static_cast<size_t>(shutter.samples);
-    LF_CHECK(frame.value >= 1 && frame.value <= cameras.size());
     LF_CHECK(instants.size() == cameras.size() * count);
-    return std::span(instants).subspan((frame.value - 1) * count, count);
+    return std::span(instants).subspan(frames().IndexOf(frame) * count, count);
   }
   // Calls change(&camera) for the camera of each frame and of each instant. A shutter makes
   // pictures of the instants alone, and describes frames by the cameras.

@@ -23,7 +23,9 @@ std::vector<CameraFact> FactsOf(const CameraPath& path, FrameId frame) {
   RenderCamera camera = path.Camera(frame);
   // The views of a moment are frames of the same time.
   if (path.views > 1)
-    camera.time_s = (frame.value - 1) / static_cast<uint32_t>(path.views) / path.fps;
+    camera.time_s =
+        static_cast<double>(path.frames().IndexOf(frame) / static_cast<size_t>(path.views)) /
+        path.fps;
   std::vector<CameraFact> facts = CameraFacts(camera, frame);
   if (path.shutter.exists())
     facts.push_back({"shutter",
@@ -109,12 +111,6 @@ nlohmann::ordered_json JsonOf(const CameraFact& fact) {
 
 }  // namespace
 
-std::vector<FrameId> AllFrames(const CameraPath& path) {
-  std::vector<FrameId> frames;
-  for (uint32_t frame = 1; frame <= path.frame_count(); ++frame) frames.push_back({frame});
-  return frames;
-}
-
 std::string CameraTable(const CameraPath& path, const std::vector<FrameId>& frames) {
   std::string constants;
   std::vector<std::string> lines(2 + frames.size());
@@ -161,6 +157,7 @@ std::string CameraJson(const CameraPath& path, const std::vector<FrameId>& frame
   const Intrinsics& intrinsics = path.cameras.front().pinhole.intrinsics;
   nlohmann::ordered_json json = {{"fps", path.fps},
                                  {"frames", path.frame_count()},
+                                 {"first_frame", path.first_frame},
                                  {"resolution", {intrinsics.width_px, intrinsics.height_px}},
                                  {"unit_m", path.unit_m}};
   nlohmann::ordered_json& cameras = json["cameras"] = nlohmann::ordered_json::array();

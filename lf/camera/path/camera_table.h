@@ -10,9 +10,6 @@
 
 namespace lf {
 
-// Returns the frames 1, 2, ... of a path.
-std::vector<FrameId> AllFrames(const CameraPath& path);
-
 // Returns one line for each fact about the camera (such as its position) that is the same in all
 // frames, then a table of the other facts: one line per frame, with aligned columns below two
 // header lines for the names of the facts and of their parts, such as x, y and z. Numbers have five
@@ -26,9 +23,9 @@ std::string CameraBlock(const CameraPath& path, FrameId frame);
 // is "inf".
 std::string CameraCsv(const CameraPath& path, const std::vector<FrameId>& frames);
 
-// Returns {"fps", "frames", "resolution", "unit_m", "cameras": [{"frame": 1, ...}, ...]} with all
-// digits; infinity is null. "frames" is the number of frames of the path; "cameras" has only the
-// given `frames`.
+// Returns {"fps", "frames", "first_frame", "resolution", "unit_m", "cameras": [{"frame": 1, ...},
+// ...]} with all digits; infinity is null. "frames" is the number of frames of the path,
+// "first_frame" the number of its first one; "cameras" has only the given `frames`.
 std::string CameraJson(const CameraPath& path, const std::vector<FrameId>& frames);
 
 }  // namespace lf

@@ -21,7 +21,7 @@ CameraPath Path() {
 
 TEST(CameraTable, WhatIsConstantStandsOnceAboveTheTable) {
   const CameraPath path = Path();
-  const std::string table = CameraTable(path, AllFrames(path));
+  const std::string table = CameraTable(path, path.frames().All());
   EXPECT_NE(table.find("focus_distance_w"), std::string::npos) << table;
   const std::string rows = table.substr(table.find("\n\n"));
   EXPECT_EQ(rows.find("focus_distance_w"), std::string::npos) << table;

@@ -217,8 +217,8 @@ double WidestRadius(const PathDescription& path) {
   const bool is_constant = !moves(path.aperture_diameter_w) && !moves(path.f_number) &&
                            !moves(path.focal_length_w) && !moves(path.field_of_view_rad);
   double widest_w = 0;
-  for (int frame = 1; frame <= (is_constant ? 1 : path.frame_count); ++frame)
-    widest_w = std::max(widest_w, RadiusAt({path, frame, (frame - 1) / path.fps}));
+  for (int i = 0; i < (is_constant ? 1 : path.frame_count); ++i)
+    widest_w = std::max(widest_w, RadiusAt({path, path.first_frame + i, i / path.fps}));
   return widest_w;
 }
 
@@ -230,13 +230,15 @@ PathFrames::PathFrames(PathDescription path) : described_(std::move(path)) {
   whole_.unit_m = described_->unit_m;
   whole_.shutter = described_->shutter;
   whole_.views = described_->views;
+  whole_.first_frame = static_cast<uint32_t>(described_->first_frame);
   whole_.focal_surface = described_->focal_surface;
 }
 
 PathFrames::PathFrames(CameraPath path) : whole_(std::move(path)) {}
 
-size_t PathFrames::frame_count() const {
-  return described_ ? static_cast<size_t>(described_->frame_count) : whole_.frame_count();
+FrameNumbers PathFrames::frames() const {
+  if (!described_) return whole_.frames();
+  return {whole_.first_frame, static_cast<size_t>(described_->frame_count)};
 }
 
 // Rotates the blades while they close: by a constant angle per stop below the widest opening among
@@ -252,23 +254,23 @@ Result<RenderCamera> PathFrames::CameraAtTime(FrameId frame, double time_s) cons
 }
 
 Result<RenderCamera> PathFrames::Camera(FrameId frame) const {
-  LF_CHECK(frame.value >= 1 && frame.value <= frame_count());
   if (!described_) return whole_.Camera(frame);
-  LF_ASSIGN_OR_RETURN(RenderCamera camera,
-                      CameraAtTime(frame, (frame.value - 1) / described_->fps));
+  const auto index = static_cast<double>(frames().IndexOf(frame));
+  LF_ASSIGN_OR_RETURN(RenderCamera camera, CameraAtTime(frame, index / described_->fps));
   // All views of a moment show one recording time.
   if (described_->recording && described_->views > 1) {
-    const uint32_t moment = (frame.value - 1) / static_cast<uint32_t>(described_->views);
-    camera.recording_time = described_->recording->At(moment / described_->fps);
+    const size_t moment = frames().IndexOf(frame) / static_cast<size_t>(described_->views);
+    camera.recording_time =
+        described_->recording->At(static_cast<double>(moment) / described_->fps);
   }
   return camera;
 }
 
 Result<RenderCamera> PathFrames::Instant(FrameId frame, int instant) const {
-  LF_CHECK(frame.value >= 1 && frame.value <= frame_count());
   if (!described_) return whole_.Instants(frame)[static_cast<size_t>(instant)];
-  return CameraAtTime(
-      frame, (frame.value - 1 + InstantOffset(described_->shutter, instant)) / described_->fps);
+  const auto index = static_cast<double>(frames().IndexOf(frame));
+  return CameraAtTime(frame,
+                      (index + InstantOffset(described_->shutter, instant)) / described_->fps);
 }
 
 Result<CameraPath> PathFrames::Some(FrameId begin, size_t count) const {
@@ -277,6 +279,7 @@ Result<CameraPath> PathFrames::Some(FrameId begin, size_t count) const {
   some.unit_m = whole_.unit_m;
   some.shutter = whole_.shutter;
   some.focal_surface = whole_.focal_surface;
+  some.first_frame = begin.value;
   // A part of the frames may end within a moment.
   if (count == frame_count()) some.views = whole_.views;
   some.cameras.reserve(count);
@@ -297,10 +300,10 @@ Result<CameraPath> PathFrames::Some(FrameId begin, size_t count) const {
 
 Result<void> PathFrames::CheckAll(const std::function<bool()>& is_stopped,
                                   const std::function<Result<void>(FrameId)>& check) const {
-  for (uint32_t frame = 1; frame <= frame_count(); ++frame) {
-    if (is_stopped && frame % kFramesPerLook == 0 && is_stopped())
+  for (size_t i = 0; i < frame_count(); ++i) {
+    if (is_stopped && i % kFramesPerLook == kFramesPerLook - 1 && is_stopped())
       return Error{ErrorKind::kInterrupted, "interrupted"};
-    LF_RETURN_IF_ERROR(check(FrameId{frame}));
+    LF_RETURN_IF_ERROR(check(frames().At(i)));
   }
   return {};
 }
@@ -321,7 +324,7 @@ Result<void> PathFrames::Check(const std::function<bool()>& is_stopped) const {
 }
 
 Result<CameraPath> EvaluatePath(const PathFrames& path) {
-  return path.Some(FrameId{1}, path.frame_count());
+  return path.Some(FrameId{path.frames().first}, path.frame_count());
 }
 
 }  // namespace lf

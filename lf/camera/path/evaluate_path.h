@@ -24,7 +24,8 @@ class PathFrames {
   // Holds cameras that are known, such as those of another program's file.
   explicit PathFrames(CameraPath path);
 
-  size_t frame_count() const;
+  size_t frame_count() const { return frames().count; }
+  FrameNumbers frames() const;
   double fps() const { return whole_.fps; }
   double unit_m() const { return whole_.unit_m; }
   bool has_focal_surface() const { return whole_.focal_surface.has_value(); }
@@ -35,7 +36,7 @@ class PathFrames {
   // blades is counted; 0 if it does not depend on it.
   double widest_radius_w() const { return widest_radius_w_; }
 
-  // Returns the camera at the time of a frame, from 1 to frame_count(). kInput: an error of
+  // Returns the camera at the time of one of the frames(). kInput: an error of
   // EvaluatePath() at this frame. There is none after Check() has succeeded.
   Result<RenderCamera> Camera(FrameId frame) const;
   // Returns the cameras of `count` frames from `begin` on, and of their instants, as a path of
@@ -57,7 +58,7 @@ class PathFrames {
   double widest_radius_w_ = 0;
 };
 
-// Returns the cameras of frames 1, 2, ...: the camera of frame i has the state at time (i - 1) /
+// Returns the cameras of all frames: the camera with index i, from 0, has the state at time i /
 // fps. With a shutter, also returns the cameras of the instants of every frame, each with the state
 // at its own time: all quantities move while a frame is exposed. The instants of the first frames
 // may be before time 0, where speeds continue backwards and keyframes hold their first value.

@@ -38,6 +38,7 @@ struct PathDescription {
   std::string file_name;
   double fps = 30;
   int frame_count = 0;
+  int first_frame = 1;  // number of the first frame, which is at time 0
   double unit_m = 1;
   int width_px = 0;
   int height_px = 0;

@@ -19,7 +19,7 @@
 namespace lf {
 namespace {
 
-// Reads the keys `fps` and `frames`.
+// Reads the keys `fps`, `frames` and `first_frame`.
 void ReadClock(YamlMap* file, PathDescription* path) {
   if (const YamlEntry* fps = file->Require("fps", "fps: 30"))
     path->fps =
@@ -27,6 +27,10 @@ void ReadClock(YamlMap* file, PathDescription* path) {
   if (const YamlEntry* frames = file->Require("frames", "frames: 60"))
     path->frame_count =
         ReadInteger(*frames->value, "frames", 1, kMostFrames, file->errors()).value_or(1);
+  const int largest = static_cast<int>(kLargestFrameNumber) - path->frame_count + 1;
+  if (const YamlEntry* first = file->Find("first_frame"))
+    path->first_frame =
+        ReadInteger(*first->value, "first_frame", 0, largest, file->errors()).value_or(1);
 }
 
 void ReadResolution(YamlMap* file, PathDescription* path) {

@@ -298,6 +298,30 @@ TEST(PathYaml, ChecksTheShutter) {
       << error("{angle_deg: 180, samples: 64}", "20000");
 }
 
+TEST(PathYaml, StatesTheNumberOfTheFirstFrame) {
+  TestPath path;
+  const std::string tail = "\nresolution: [200, 100]\n";
+  EXPECT_EQ(path.Parse()->first_frame, 1u);
+  path.clock = "fps: 10\nframes: 21\nfirst_frame: 1001" + tail;
+  path.pose = "position: [0, 0, -2], look_at: [0, 0, 0], speed: [1, 0, 0]";
+  EXPECT_EQ(path.Parse()->frames(), (FrameNumbers{1001, 21}));
+  // Times and cameras do not depend on it.
+  EXPECT_EQ(path.At(1001).time_s, 0);
+  EXPECT_DOUBLE_EQ(path.At(1021).pinhole.CentreWorld().x(), 2);
+  for (const std::string first : {"-1", "1.5", "99999980", "x"}) {
+    path.clock = "fps: 10\nframes: 21\nfirst_frame: " + first + tail;
+    EXPECT_TRUE(
+        Says(path, first + tail, "first_frame: expected a whole number from 0 to 99999979, found"));
+  }
+  path.clock = "fps: 10\nframes: 21\nfirst_frame: 99999979" + tail;
+  EXPECT_EQ(path.Parse()->frames().last(), kLargestFrameNumber);
+  path.clock = "fps: 10\nframes: 21\nfirst_frame: 1001" + tail;
+  path.more = "keyframes: {aperture_diameter: [{time: 0, value: 1}, {time: 1, value: 2}]}\n";
+  path.optics = "sensor_width_mm: 36, focal_length_mm: 50";
+  path.pose = "position: [0, 0, -1], look_at: [0, 0, 0], speed: [0, 0, 1]";
+  EXPECT_NE(path.Error().find("at frame 1011 (1 s)"), std::string::npos) << path.Error();
+}
+
 TEST(PathYaml, StatesTheViewsOfEachMoment) {
   TestPath path;
   EXPECT_EQ(path.Parse()->views, 1);

@@ -276,6 +276,7 @@ Result<PathYaml> PathYamlOf(const CameraPath& path) {
   yaml.text =
       fmt::format("format: lfpath 1\nfps: {}\nframes: {}\nunit_m: {}\nresolution: [{}, {}]\n",
                   path.fps, path.frame_count(), path.unit_m, plate.width_px, plate.height_px);
+  if (path.first_frame != 1) yaml.text += fmt::format("first_frame: {}\n", path.first_frame);
   if (path.views > 1) yaml.text += fmt::format("views: {}\n", path.views);
   if (path.shutter.exists())
     yaml.text += fmt::format("shutter: {{angle_deg: {}, samples: {}}}\n", path.shutter.angle_deg,

@@ -62,6 +62,15 @@ TEST(PathYamlWrite, ACameraThatRestsIsStatedOnce) {
   EXPECT_TRUE(yaml.lost.empty());
 }
 
+TEST(PathYamlWrite, TheNumberOfTheFirstFrameIsKept) {
+  CameraPath path = *TestPath{}.Parse();
+  EXPECT_EQ(PathYamlOf(path)->text.find("first_frame"), std::string::npos);
+  path.first_frame = 1001;
+  const Result<CameraPath> read = ParsePathYaml(PathYamlOf(path)->text, "p.yaml", std::nullopt);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->first_frame, 1001u);
+}
+
 TEST(PathYamlWrite, EverythingThatMovesIsRestored) {
   const PathYaml yaml = ExpectRoundTrip(Parsed(
       {.clock = "fps: 7\nframes: 9\nresolution: [200, 100]\nunit_m: 0.25\n",

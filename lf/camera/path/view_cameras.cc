@@ -37,6 +37,7 @@ Result<CameraPath> PathOfViews(const CameraPath& path, int view_count,
   views.fps = path.fps;
   views.unit_m = path.unit_m;
   views.views = view_count;
+  views.first_frame = path.first_frame;
   views.cameras.reserve(path.frame_count() * static_cast<size_t>(view_count));
   for (size_t frame = 0; frame < path.frame_count(); ++frame) {
     const RenderCamera& camera = path.cameras[frame];
@@ -44,8 +45,8 @@ Result<CameraPath> PathOfViews(const CameraPath& path, int view_count,
     for (int view = 0; view < view_count; ++view) {
       Result<RenderCamera> moved = MovedAside(camera, offset_of(view, c_w), c_w);
       if (!moved)
-        return InputError(
-            fmt::format("frame {}, view {}: {}", frame + 1, view + 1, moved.error().message));
+        return InputError(fmt::format("frame {}, view {}: {}", path.frames().At(frame).value,
+                                      view + 1, moved.error().message));
       moved->time_s = static_cast<double>(views.frame_count()) / path.fps;
       views.cameras.push_back(*std::move(moved));
     }

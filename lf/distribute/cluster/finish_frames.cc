@@ -8,6 +8,7 @@
 
 #include "lf/core/file.h"
 #include "lf/core/file_lock.h"
+#include "lf/core/frame_numbers.h"
 #include "lf/render/pipeline/frame_range.h"
 #include "lf/render/state/record_fields.h"
 
@@ -18,7 +19,7 @@ namespace {
 constexpr size_t kFinishLimit_bytes = size_t{16} << 20;
 constexpr const char* kFinishFormat = "lffinish 1";
 
-Result<std::vector<FrameId>> ReadAll(const fs::path& path, size_t last_frame) {
+Result<std::vector<FrameId>> ReadAll(const fs::path& path, const FrameNumbers& of_job) {
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return std::vector<FrameId>();
   LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(path, kFinishLimit_bytes));
@@ -26,7 +27,7 @@ Result<std::vector<FrameId>> ReadAll(const fs::path& path, size_t last_frame) {
   const Json json = ParseRecord(text, kFinishFormat, &fault);
   RecordFields(json, &fault).Get("frames", &frames);
   if (fault.empty()) {
-    const auto parsed = ParseFrameRange(frames, last_frame);
+    const auto parsed = ParseFrameRange(frames, of_job);
     if (parsed) return parsed;
     fault = parsed.error().message;
   }
@@ -35,11 +36,15 @@ Result<std::vector<FrameId>> ReadAll(const fs::path& path, size_t last_frame) {
                   path.string(), fault));
 }
 
-size_t LastFrame(const ClusterJob& job) {
-  size_t last = 0;
-  for (const JobPackage& package : job.packages)
-    if (!package.frames.empty()) last = std::max<size_t>(last, package.frames.back().value);
-  return last;
+// Returns the numbers from the first frame of the job to the last.
+FrameNumbers FramesOf(const ClusterJob& job) {
+  uint32_t first = kLargestFrameNumber, last = 0;
+  for (const JobPackage& package : job.packages) {
+    if (package.frames.empty()) continue;
+    first = std::min(first, package.frames.front().value);
+    last = std::max(last, package.frames.back().value);
+  }
+  return last < first ? FrameNumbers() : FrameNumbers{first, size_t{last - first} + 1};
 }
 
 bool Has(const std::vector<FrameId>& frames, FrameId frame) {
@@ -67,7 +72,7 @@ bool HasRays(const ClusterJob& job, const JobPackage& package, FrameId frame) {
 
 Result<size_t> AskToFinish(const ClusterJob& job, const std::string& frames_text) {
   LF_ASSIGN_OR_RETURN(const std::vector<FrameId> frames,
-                      ParseFrameRange(frames_text, LastFrame(job), "{finish}"));
+                      ParseFrameRange(frames_text, FramesOf(job), "{finish}"));
   size_t unfinished_count = 0;
   for (const FrameId frame : frames) {
     const auto package =
@@ -90,7 +95,7 @@ Result<size_t> AskToFinish(const ClusterJob& job, const std::string& frames_text
   if (unfinished_count == 0) return unfinished_count;
   LF_ASSIGN_OR_RETURN(const FileLock lock, FileLock::Take(job.Folder() / "finish_frames.lock"));
   LF_ASSIGN_OR_RETURN(const std::vector<FrameId> before,
-                      ReadAll(job.FinishFramesFile(), LastFrame(job)));
+                      ReadAll(job.FinishFramesFile(), FramesOf(job)));
   std::vector<FrameId> all;
   std::set_union(before.begin(), before.end(), frames.begin(), frames.end(),
                  std::back_inserter(all));
@@ -101,7 +106,7 @@ Result<size_t> AskToFinish(const ClusterJob& job, const std::string& frames_text
 
 Result<std::vector<FrameId>> FramesToFinish(const ClusterJob& job, const JobPackage& package) {
   LF_ASSIGN_OR_RETURN(const std::vector<FrameId> all,
-                      ReadAll(job.FinishFramesFile(), LastFrame(job)));
+                      ReadAll(job.FinishFramesFile(), FramesOf(job)));
   std::vector<FrameId> frames;
   std::set_intersection(all.begin(), all.end(), package.frames.begin(), package.frames.end(),
                         std::back_inserter(frames));

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "lf/core/file.h"
+#include "lf/core/frame_numbers.h"
 #include "lf/core/shell_word.h"
 #include "lf/core/value_named.h"
 #include "lf/render/pipeline/frame_range.h"
@@ -22,7 +23,6 @@ namespace {
 
 constexpr size_t kJobLimit_bytes = size_t{64} << 20;
 constexpr const char* kJobFormat = "lfjob 1";
-constexpr size_t kMostFrames = 1'000'000;        // largest frame number
 constexpr size_t kMostFramesOfJob = 10'000'000;  // largest number of frames of all packages
 
 // Returns true if the text contains control characters, such as line breaks, which would start a
@@ -75,7 +75,7 @@ JobPackage PackageFromJson(const Json& json, std::string* fault) {
   fields.Get("rays", &package.ray_count);
   package.file = file;
   if (!fault->empty()) return package;
-  const auto parsed = ParseFrameRange(frames, kMostFrames, "\"frames\"");
+  const auto parsed = ParseFrameRange(frames, {0, size_t{kLargestFrameNumber} + 1}, "\"frames\"");
   if (!parsed)
     *fault = parsed.error().message;
   else if (FrameRangeText(*parsed) != frames)

@@ -17,16 +17,16 @@ Result<RebinCost> ForecastRebinning(const ImageIndex& index, const LfImageStore&
   constexpr size_t kRebinnedImages = 16;
   const double start_s = ProcessCpuSeconds();
   std::vector<SampledFrame> sampled;
-  for (uint32_t n = 1; n <= path.frame_count(); ++n)
-    sampled.push_back({path.Camera(FrameId{n}), SamplingOf(surroundings[n - 1])});
+  for (size_t i = 0; i < path.frame_count(); ++i)
+    sampled.push_back({path.cameras[i], SamplingOf(surroundings[i])});
   RebinSettings options = needs.rebin;
   options.max_cells = max_cells;
-  const FilmSlabs slabs(sampled, options.query, options.slab);
+  const FilmSlabs slabs(sampled, path.first_frame, options.query, options.slab);
   double lens_s = 0;  // part of RenderRate::finish_s
   std::vector<RebinnedFrame> rebinned;
   for (const FrameId frame : frames) {
     const RenderCamera& camera = path.Camera(frame);
-    const double distance_w = sampled[frame.value - 1].sampling.lf.camera_distance_w;
+    const double distance_w = sampled[path.frames().IndexOf(frame)].sampling.lf.camera_distance_w;
     const double lens_start_s = ProcessCpuSeconds();
     const FrameLens lens(index, camera, needs.lens_weights, needs.select, pool, distance_w);
     lens_s += ProcessCpuSeconds() - lens_start_s;

@@ -10,9 +10,9 @@ DepthSource KnowDepths(const LightField& light_field, const CameraPath& path, Th
                        PreprocessOptions* options) {
   if (options->depths) return DepthSource::kStated;
   if (light_field.depth_range) return DepthSource::kCalibration;
-  const FrameId first = options->frames.empty() ? FrameId{1} : options->frames.front();
   const auto store = OpenStore(light_field, Mosaics::kToRgb);
   if (!store || path.frame_count() == 0) return DepthSource::kUnknown;
+  const FrameId first = options->frames.empty() ? path.frames().At(0) : options->frames.front();
   options->depths =
       SweptDepths(light_field, **store, path.Camera(first).pinhole.CentreWorld(), pool);
   return options->depths ? DepthSource::kLfImages : DepthSource::kUnknown;

@@ -150,8 +150,7 @@ Result<PreprocessReport> Preprocessor::Run() {
 
 Result<void> Preprocessor::Begin() {
   frames_ = options_.frames;
-  if (frames_.empty())
-    for (uint32_t n = 1; n <= path_.frame_count(); ++n) frames_.push_back(FrameId{n});
+  if (frames_.empty()) frames_ = path_.frames().All();
   LF_RETURN_IF_ERROR(CheckLaterRender(light_field_, path_, frames_, film_, needs_));
   if (options_.output_folder) {
     LF_ASSIGN_OR_RETURN(
@@ -197,12 +196,11 @@ Result<void> Preprocessor::MakeIndex() {
 // of rebinned rays are planned for the whole film. Stores nothing for packages without neighbours.
 Result<void> Preprocessor::DescribeSurroundings(const std::map<FrameId, FrameSampling>& sampling) {
   if (!needs_.HasNeighbours()) return {};
-  for (uint32_t n = 1; n <= path_.frame_count(); ++n) {
-    const auto known = sampling.find(FrameId{n});
-    surroundings_.push_back(
-        SurroundingsOf(known != sampling.end()
-                           ? known->second
-                           : SamplingOf(*index_, path_.Camera(FrameId{n}), needs_.select, pool_)));
+  for (const FrameId frame : path_.frames().All()) {
+    const auto known = sampling.find(frame);
+    surroundings_.push_back(SurroundingsOf(
+        known != sampling.end() ? known->second
+                                : SamplingOf(*index_, path_.Camera(frame), needs_.select, pool_)));
     LF_RETURN_IF_ERROR(CheckInterrupted());
   }
   return {};
@@ -251,7 +249,7 @@ void Preprocessor::KeepDistances(FrameId frame, const std::vector<double>& dista
   instant_distances_w_.resize(path_.instants.size(), -1);
   std::copy(distances_w.begin(), distances_w.end(),
             instant_distances_w_.begin() +
-                static_cast<ptrdiff_t>((frame.value - 1) * distances_w.size()));
+                static_cast<ptrdiff_t>(path_.frames().IndexOf(frame) * distances_w.size()));
 }
 
 void Preprocessor::Keep(FrameId frame, FrameNeeds needs) {

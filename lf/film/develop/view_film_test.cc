@@ -177,6 +177,29 @@ TEST_F(ViewFilmTest, MomentsOfAFolderMayBeginAnywhere) {
   EXPECT_EQ(report->files[1], folder_ / "s_0004.png");
 }
 
+// The moments of a film whose frames begin at another number have the numbers from there on.
+TEST_F(ViewFilmTest, MomentsAreCountedFromTheFirstFrameOfTheFilm) {
+  WriteFrames<uint8_t>(1, 4);
+  for (int frame = 4; frame >= 1; --frame) {
+    const fs::path from =
+        FramePath(views_, FrameId{static_cast<uint32_t>(frame)}, FrameFormat::kPng8);
+    fs::remove(from);
+    ASSERT_TRUE(WriteStoredImage(
+        FramePath(views_, FrameId{static_cast<uint32_t>(1002 + frame)}, FrameFormat::kPng8),
+        Picture<uint8_t>(frame, 6, 4, 3), {"R", "G", "B"}, {PixelType::kUint8, {}, {}, true},
+        {{kFirstFrameText, "1001"}}));
+  }
+  const auto report = Write({ViewLayout::kSideBySide, {}, folder_ / "s.png"});
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->files[0], folder_ / "s_1002.png");
+  EXPECT_EQ(report->files[1], folder_ / "s_1003.png");
+  ASSERT_TRUE(WriteStoredImage(FramePath(views_, FrameId{1000}, FrameFormat::kPng8),
+                               Picture<uint8_t>(1, 6, 4, 3), {"R", "G", "B"},
+                               {PixelType::kUint8, {}, {}, true}, {{kFirstFrameText, "1001"}}));
+  ExpectWords(ErrorOf({ViewLayout::kSideBySide, {}, folder_ / "t.png"}, ErrorKind::kInput),
+              {"frame_1000.png", "states the number 1001 for its first frame"});
+}
+
 TEST_F(ViewFilmTest, AMissingViewIsNamed) {
   WriteFrames<uint8_t>(1, 6);
   const ViewFilmOptions options = {ViewLayout::kQuilt, {3, 1}, folder_ / "q.png"};

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "lf/core/parse_number.h"
+#include "lf/core/frame_numbers.h"
 #include "lf/film/develop/frame_file.h"
 #include "lf/film/develop/join_views.h"
 
@@ -25,8 +25,8 @@ std::optional<uint32_t> NumberInName(const fs::path& file) {
   const std::string stem = file.stem().string();
   constexpr std::string_view kBegin = "frame_";
   if (!stem.starts_with(kBegin)) return std::nullopt;
-  const auto number = ParseWhole<uint32_t>(std::string_view(stem).substr(kBegin.size()));
-  if (!number || *number == 0) return std::nullopt;
+  const auto number = ParseFrameNumber(std::string_view(stem).substr(kBegin.size()));
+  if (!number) return std::nullopt;
   for (const FrameFormat format : {FrameFormat::kExrHalf, FrameFormat::kPng8})
     if (FramePath("", FrameId{*number}, format) == file.filename()) return number;
   return std::nullopt;
@@ -63,16 +63,27 @@ Result<std::map<uint32_t, fs::path>> FramesOf(const fs::path& folder) {
   return frames;
 }
 
+// Returns the number of the first frame of the film, which a frame states if it is not 1.
+Result<uint32_t> FirstOfFilm(const fs::path& frame) {
+  LF_ASSIGN_OR_RETURN(const PictureHeader header, ReadPictureHeader(frame));
+  return header.colours.first_frame.value_or(1);
+}
+
 Result<std::vector<ViewMoment>> MomentsOfFolder(const fs::path& folder, int view_count) {
   LF_ASSIGN_OR_RETURN(const auto frames, FramesOf(folder));
+  LF_ASSIGN_OR_RETURN(const uint32_t of_film, FirstOfFilm(frames.begin()->second));
+  if (frames.begin()->first < of_film)
+    return InputError(fmt::format(
+        "{}: its film states the number {} for its first frame: expected no frame before it",
+        frames.begin()->second.string(), of_film));
   const auto views = static_cast<uint32_t>(view_count);
   // The first frame of the first moment, and the last one of the last.
-  const uint32_t first = (frames.begin()->first - 1) / views * views + 1;
-  const uint32_t last = (frames.rbegin()->first - 1) / views * views + views;
+  const uint32_t first = of_film + (frames.begin()->first - of_film) / views * views;
+  const uint32_t last = of_film + (frames.rbegin()->first - of_film) / views * views + views - 1;
   std::vector<ViewMoment> moments;
   for (uint32_t number = first; number <= last; ++number) {
-    const uint32_t view = (number - 1) % views;
-    if (view == 0) moments.push_back({static_cast<int>((number - 1) / views + 1), {}});
+    const uint32_t view = (number - of_film) % views;
+    if (view == 0) moments.push_back({static_cast<int>(of_film + (number - of_film) / views), {}});
     const auto found = frames.find(number);
     if (found == frames.end())
       return InputError(fmt::format(
@@ -98,9 +109,10 @@ Result<std::vector<ViewMoment>> MomentsOfFiles(std::span<const fs::path> files, 
     return UsageError(fmt::format(
         "the number of frames is {}, from {} to {}: expected a multiple of {}, the number of views",
         files.size(), files.front().string(), files.back().string(), views));
+  LF_ASSIGN_OR_RETURN(const uint32_t first, FirstOfFilm(files.front()));
   std::vector<ViewMoment> moments;
   for (size_t begin = 0; begin < files.size(); begin += views)
-    moments.push_back({static_cast<int>(begin / views + 1),
+    moments.push_back({static_cast<int>(first + begin / views),
                        {files.begin() + static_cast<std::ptrdiff_t>(begin),
                         files.begin() + static_cast<std::ptrdiff_t>(begin + views)}});
   return moments;

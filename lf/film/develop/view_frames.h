@@ -14,12 +14,13 @@ namespace lf {
 
 // The frames of all views at one moment of a film.
 struct ViewMoment {
-  int number = 1;                            // of the moment in the film, from 1
+  int number = 1;                            // of the moment in the film
   std::vector<std::filesystem::path> files;  // one for each view, left to right
 };
 
 // Returns the moments of a film whose frames are in the order that lfpath gives them: all views of
-// moment 1, then those of moment 2, and so on.
+// the first moment, then those of the second, and so on. The first moment has the number of the
+// first frame of the film, which frames state if it is not 1.
 //   paths       a folder, whose files frame_0001.png or frame_0001.exr, ... are taken; or the files
 //               of the frames, in their order
 //   view_count  views of each moment

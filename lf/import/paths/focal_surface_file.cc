@@ -197,9 +197,7 @@ class SurfaceMaker {
 
   Result<void> Run() {
     std::vector<FrameId> frames = work_.frames;
-    if (frames.empty())
-      for (uint32_t frame = 1; frame <= path_->frame_count(); ++frame)
-        frames.push_back(FrameId{frame});
+    if (frames.empty()) frames = path_->frames().All();
     if (!HasFilePerFrame(source_)) {
       LF_ASSIGN_OR_RETURN(of_all_, LoadPicture(folder_ / source_.file, source_));
     }
@@ -207,7 +205,7 @@ class SurfaceMaker {
     std::atomic<bool> has_failed = false;
     const auto make = [&](size_t i) {
       if (has_failed || IsStopped()) return;
-      if (const Result<void> made = MakeFrame(frames[i].value); !made) {
+      if (const Result<void> made = MakeFrame(frames[i]); !made) {
         errors[i] = made.error();
         has_failed = true;
       }
@@ -226,17 +224,19 @@ class SurfaceMaker {
  private:
   bool IsStopped() const { return work_.stop != nullptr && *work_.stop; }
 
-  Result<void> MakeFrame(uint32_t frame) {
+  Result<void> MakeFrame(FrameId id) {
+    const uint32_t frame = id.value;
+    const size_t index = path_->frames().IndexOf(id);
     std::optional<SurfacePicture> of_frame;
     if (!of_all_) {
       LF_ASSIGN_OR_RETURN(of_frame, LoadPicture(folder_ / FileOfFrame(source_, frame), source_));
     }
     const SurfacePicture& picture = of_all_ ? *of_all_ : *of_frame;
-    LF_RETURN_IF_ERROR(Make(picture, frame, &path_->cameras[frame - 1]));
+    LF_RETURN_IF_ERROR(Make(picture, frame, &path_->cameras[index]));
     if (!path_->shutter.exists()) return {};
     const auto samples = static_cast<size_t>(path_->shutter.samples);
     for (size_t i = 0; i < samples; ++i)
-      LF_RETURN_IF_ERROR(Make(picture, frame, &path_->instants[(frame - 1) * samples + i]));
+      LF_RETURN_IF_ERROR(Make(picture, frame, &path_->instants[index * samples + i]));
     return {};
   }
 

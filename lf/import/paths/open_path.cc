@@ -95,8 +95,8 @@ std::vector<fs::path> FilesOfPath(const fs::path& path) {
   // The path cannot be read to its end if it has a transmission, so that it is read once more.
   const auto whole = read ? read : ReadPathFrames(path, std::nullopt, PicturesBeside(path));
   if (whole && whole->focal_surface())
-    for (uint32_t frame = 1; frame <= whole->frame_count(); ++frame) {
-      files.push_back(path.parent_path() / FileOfFrame(*whole->focal_surface(), frame));
+    for (const FrameId frame : whole->frames().All()) {
+      files.push_back(path.parent_path() / FileOfFrame(*whole->focal_surface(), frame.value));
       if (!HasFilePerFrame(*whole->focal_surface())) break;
     }
   return files;

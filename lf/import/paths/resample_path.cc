@@ -148,6 +148,7 @@ Result<CameraPath> ResamplePath(const CameraPath& path, std::optional<double> fp
   resampled.fps = new_fps;
   resampled.unit_m = path.unit_m;
   resampled.views = path.views;
+  resampled.first_frame = path.first_frame;
   resampled.cameras.resize(static_cast<size_t>(count) * views);
   for (uint32_t view = 0; view < views; ++view) {
     const CameraCurves curves(CamerasOfView(path, static_cast<int>(view)));

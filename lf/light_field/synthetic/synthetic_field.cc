@@ -111,8 +111,9 @@ Result<void> CheckKeepsInputs(const SyntheticFieldOptions& a, const LightField& 
   std::vector<OutputFile> outputs = {{CalibrationIn(a), "the calibration"}};
   for (uint32_t i = 0; i < light_field.size() && !a.calibration_only; ++i)
     outputs.emplace_back(light_field.ImagePath({i}), "an LF image");
-  for (size_t i = 1; i <= frame_count; ++i)
-    outputs.emplace_back(TruthPath(light_field.folder / "truth", i), "a frame");
+  for (size_t i = 0; i < frame_count; ++i)
+    outputs.emplace_back(TruthPath(light_field.folder / "truth", a.first_truth_frame + i),
+                         "a frame");
   LF_RETURN_IF_ERROR(CheckOutputFiles(std::move(outputs), a.inputs));
   // LF images that are removed are checked apart, because some are also outputs.
   return CheckOutputFiles({earlier.begin(), earlier.end()}, a.inputs);
@@ -174,7 +175,8 @@ Result<void> WriteSyntheticField(const SyntheticFieldOptions& options, ThreadPoo
   if (truth.empty()) return {};
   return WriteTruth(
       scene, truth, {options.truth_samples, 0}, light_field.folder / "truth", pool, surroundings,
-      [&](size_t done) { return keep_going(done, frame_count, true); }, instants);
+      [&](size_t done) { return keep_going(done, frame_count, true); }, instants,
+      options.first_truth_frame);
 }
 
 }  // namespace lf

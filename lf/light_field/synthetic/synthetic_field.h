@@ -22,6 +22,7 @@ namespace lf {
 // name.
 struct SyntheticFieldOptions {
   std::vector<RenderCamera> truth_cameras = {};  // of the ground truth; the world unit is one metre
+  uint32_t first_truth_frame = 1;                // number of the first frame of the ground truth
   int truth_instants = 1;  // number of consecutive truth_cameras whose mean is one frame
   // Files that are read, such as those of a camera path, and that no output may replace.
   std::vector<std::filesystem::path> inputs = {};

@@ -38,8 +38,8 @@ std::filesystem::path TruthPath(const std::filesystem::path& folder, size_t numb
 Result<void> WriteTruth(const Scene& scene, std::span<const RenderCamera> cameras,
                         const LensSampling& sampling, const std::filesystem::path& folder,
                         ThreadPool& pool, Surroundings surroundings,
-                        const std::function<bool(size_t frames_done)>& keep_going,
-                        size_t instants) {
+                        const std::function<bool(size_t frames_done)>& keep_going, size_t instants,
+                        uint32_t first_frame) {
   LF_CHECK(instants > 0 && cameras.size() % instants == 0);
   LF_RETURN_IF_ERROR(CreateFolder(folder));
   std::vector<std::string> names = {"R", "G", "B"};
@@ -53,7 +53,7 @@ Result<void> WriteTruth(const Scene& scene, std::span<const RenderCamera> camera
     for (int c = 0; c < picture.channels(); ++c)
       channels.push_back({names[static_cast<size_t>(c)], picture.view(), c, false});
     channels.push_back({"Z", depths.view(), 0, false});
-    LF_RETURN_IF_ERROR(WriteExr(TruthPath(folder, i + 1), channels));
+    LF_RETURN_IF_ERROR(WriteExr(TruthPath(folder, first_frame + i), channels));
     if (keep_going && !keep_going(i + 1) && i + 1 < count)
       return Error{ErrorKind::kInterrupted,
                    fmt::format("{}: stopped after {} of {} frames; run the command again with "

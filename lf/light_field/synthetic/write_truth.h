@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <span>
@@ -19,11 +20,11 @@ namespace lf {
 // Returns the file of a frame: folder/frame_0001.exr for number 1.
 std::filesystem::path TruthPath(const std::filesystem::path& folder, size_t number);
 
-// Writes the frames TruthPath(folder, 1), ..., one for each camera: R, G, B as floats, linear
-// light, and Z, the depths that are seen through the lens centre (DepthsSeen()). If `instants` is
-// above 1, a frame is the mean of this many consecutive cameras (CameraPath::instants), and Z is
-// that of the middle one. If surroundings are transparent, R, G and B are multiplied by alpha, and
-// A is written, too.
+// Writes the frames TruthPath(folder, first_frame), ..., one for each camera: R, G, B as floats,
+// linear light, and Z, the depths that are seen through the lens centre (DepthsSeen()). If
+// `instants` is above 1, a frame is the mean of this many consecutive cameras
+// (CameraPath::instants), and Z is that of the middle one. If surroundings are transparent, R, G
+// and B are multiplied by alpha, and A is written, too.
 //   instants    number of `cameras` is a multiple of it
 //   keep_going  called after every frame; returns false to stop the work. May be empty
 // kOutput: a folder or file cannot be written. kInterrupted: the work was stopped; written frames
@@ -32,6 +33,6 @@ Result<void> WriteTruth(const Scene& scene, std::span<const RenderCamera> camera
                         const LensSampling& sampling, const std::filesystem::path& folder,
                         ThreadPool& pool, Surroundings surroundings = Surroundings::kShown,
                         const std::function<bool(size_t frames_done)>& keep_going = {},
-                        size_t instants = 1);
+                        size_t instants = 1, uint32_t first_frame = 1);
 
 }  // namespace lf

@@ -23,6 +23,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "lf/core/frame_numbers.h"
 #include "lf/pixels/files/layers.h"
 #include "lf/pixels/files/picture_decoder.h"
 #include "lf/pixels/files/stated_camera.h"
@@ -158,6 +159,7 @@ class ExrDecoder : public PictureDecoder {
       if (rate > 0 && std::isfinite(rate)) facts.frames_per_second = rate;
     }
     facts.camera = StatedCameraOf([this](const char* key) { return Text(key); });
+    facts.first_frame = ParseFrameNumber(Text(kFirstFrameText));
     return facts;
   }
 

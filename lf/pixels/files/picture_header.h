@@ -17,6 +17,8 @@
 namespace lf {
 
 inline constexpr const char* kFrameRateText = "lf:fps";
+// Key of the text in which a frame states the number of the first frame of its film.
+inline constexpr const char* kFirstFrameText = "lf:first_frame";
 // The text, or the attribute of an EXR file, that states what a file was made of
 // (film/develop/file_inputs.h).
 inline constexpr const char* kInputsText = "lf:inputs";
@@ -40,6 +42,9 @@ struct ColourFacts {
   // EXR and PNG: the camera of a frame that a renderer of ours has written. WriteStoredImage() does
   // not write it, because a joined picture has several cameras.
   std::optional<StatedCamera> camera = {};
+  // EXR and PNG: the text with the key kFirstFrameText; unset unless it is a number of a frame. It
+  // is not written, because a joined picture is a moment of its own.
+  std::optional<uint32_t> first_frame = {};
   friend bool operator==(const ColourFacts&, const ColourFacts&) = default;
 };
 

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "lf/core/frame_numbers.h"
 #include "lf/core/parse_number.h"
 #include "lf/pixels/files/exif_orientation.h"
 #include "lf/pixels/files/picture_decoder.h"
@@ -234,6 +235,7 @@ void PngDecoder::ReadHeader() {
   colours_.is_srgb = png_get_valid(png_, png_info_, PNG_INFO_sRGB) != 0;
   colours_.frames_per_second = FrameRateOf(png_, png_info_);
   colours_.camera = StatedCameraOf([this](const char* key) { return Text(key); });
+  colours_.first_frame = ParseFrameNumber(Text(kFirstFrameText));
 }
 
 void PngDecoder::ReadPalette() {

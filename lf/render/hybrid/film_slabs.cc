@@ -3,9 +3,9 @@
 
 namespace lf {
 
-FilmSlabs::FilmSlabs(std::span<const SampledFrame> frames, const QueryOptions& options,
-                     const SlabChoices& choices)
-    : slab_of_(frames.size()) {
+FilmSlabs::FilmSlabs(std::span<const SampledFrame> frames, uint32_t first_frame,
+                     const QueryOptions& options, const SlabChoices& choices)
+    : slab_of_(frames.size()), first_frame_(first_frame) {
   std::vector<FrameQueries> queries;
   std::vector<size_t> asking;
   for (size_t f = 0; f < frames.size(); ++f) {

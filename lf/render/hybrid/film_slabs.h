@@ -6,11 +6,13 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "lf/camera/render_camera.h"
+#include "lf/core/frame_numbers.h"
 #include "lf/core/ids.h"
 #include "lf/rebinning/slab_plan.h"
 #include "lf/render/hybrid/frame_sampling.h"
@@ -24,12 +26,15 @@ struct SampledFrame {
 
 class FilmSlabs {
  public:
-  //   frames  all frames of the film, frame 1 first
-  FilmSlabs(std::span<const SampledFrame> frames, const QueryOptions& options,
+  //   frames       all frames of the film, in their order
+  //   first_frame  number of the first one
+  FilmSlabs(std::span<const SampledFrame> frames, uint32_t first_frame, const QueryOptions& options,
             const SlabChoices& choices);
 
   // Returns the index of the frame's slab; nullopt if there are no LF cameras around its lens.
-  std::optional<size_t> SlabOf(FrameId frame) const { return slab_of_[frame.value - 1]; }
+  std::optional<size_t> SlabOf(FrameId frame) const {
+    return slab_of_[FrameNumbers{first_frame_, slab_of_.size()}.IndexOf(frame)];
+  }
   // Returns the section of the film that has the slab with this index. SlabSection::bounds contain
   // the rays of all frames of the film that use the slab. SlabSection::begin and end count only
   // frames that have LF cameras around their lenses.
@@ -37,7 +42,8 @@ class FilmSlabs {
 
  private:
   std::vector<SlabSection> sections_;
-  std::vector<std::optional<size_t>> slab_of_;  // [frame - 1]: index in sections_
+  std::vector<std::optional<size_t>> slab_of_;  // [index of the frame]: index in sections_
+  uint32_t first_frame_;
 };
 
 }  // namespace lf

@@ -39,7 +39,7 @@ struct Fixture {
           {FrameId{static_cast<uint32_t>(sampled.size())},
            LensGaps(index, frame, collected, true, {}, select, options.query, pool)});
     }
-    const FilmSlabs slabs(sampled, options.query, options.slab);
+    const FilmSlabs slabs(sampled, 1, options.query, options.slab);
     return std::make_unique<RebinnedRays>(index, slabs, std::move(rebinned), collects, select,
                                           options, pool);
   }

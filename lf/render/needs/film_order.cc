@@ -13,9 +13,9 @@ Result<ImageRanks> RanksOfFilm(ImageOrder order, uint64_t seed, const LightField
   // The order must not depend on the filter, because packages can be rendered with any filter.
   if (DependsOnElement(unlimited.select.reach)) unlimited.select.reach = PixelReach::kNeighbours;
   std::vector<std::vector<ImageRays>> taken;
-  for (uint32_t n = 1; n <= path.frame_count(); ++n) {
+  for (const FrameId frame : path.frames().All()) {
     taken.emplace_back();
-    for (const FrameNeeds::Image& image : NeedsOf(index, path, FrameId{n}, unlimited, pool).images)
+    for (const FrameNeeds::Image& image : NeedsOf(index, path, frame, unlimited, pool).images)
       taken.back().push_back({image.id, image.ray_count});
     if (needs.select.interrupted != nullptr && *needs.select.interrupted)
       return Error{ErrorKind::kInterrupted, "interrupted"};

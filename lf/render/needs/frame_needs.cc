@@ -215,7 +215,7 @@ FrameSampling SamplingOf(const FrameSurroundings& surroundings) {
 
 std::optional<FrameSampling> SamplingOf(const Package& package, FrameId frame) {
   if (package.surroundings.empty()) return std::nullopt;
-  return SamplingOf(package.surroundings[frame.value - 1]);
+  return SamplingOf(package.surroundings[package.path.frames().IndexOf(frame)]);
 }
 
 FrameNeeds NeedsOf(const ImageIndex& index, const RenderCamera& frame, const NeedsOptions& options,

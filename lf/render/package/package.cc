@@ -15,22 +15,22 @@ std::vector<FrameId> Package::FrameIds() const {
 
 std::optional<double> Package::CameraDistance(FrameId frame) const {
   if (surroundings.empty()) return std::nullopt;
-  LF_CHECK(frame.value >= 1 && frame.value <= surroundings.size());
-  return surroundings[frame.value - 1].camera_distance_w;
+  LF_CHECK(surroundings.size() == path.frame_count());
+  return surroundings[path.frames().IndexOf(frame)].camera_distance_w;
 }
 
 std::optional<double> Package::RecordedCameraDistance(FrameId frame) const {
   const std::optional<double> of_all = CameraDistance(frame);
   if (!of_all) return std::nullopt;
-  return surroundings[frame.value - 1].recorded_distance_w.value_or(*of_all);
+  return surroundings[path.frames().IndexOf(frame)].recorded_distance_w.value_or(*of_all);
 }
 
 std::span<const double> Package::InstantDistances(FrameId frame) const {
   if (instant_distances_w.empty()) return {};
   const auto samples = static_cast<size_t>(path.shutter.samples);
-  LF_CHECK(frame.value >= 1 && frame.value * samples <= instant_distances_w.size());
+  LF_CHECK(instant_distances_w.size() == path.frame_count() * samples);
   const std::span<const double> distances_w =
-      std::span(instant_distances_w).subspan((frame.value - 1) * samples, samples);
+      std::span(instant_distances_w).subspan(path.frames().IndexOf(frame) * samples, samples);
   return distances_w.front() < 0 ? std::span<const double>() : distances_w;
 }
 
@@ -41,7 +41,7 @@ Package PackageOfAll(LightField light_field, CameraPath path, uint64_t seed, Ima
   package.ranks = RanksOf(order, light_field, seed);
   package.choices.order = order;
   package.choices.seed = seed;
-  for (uint32_t n = 1; n <= path.frame_count(); ++n) package.frames.push_back({.id = FrameId{n}});
+  for (const FrameId frame : path.frames().All()) package.frames.push_back({.id = frame});
   package.light_field = std::move(light_field);
   package.path = std::move(path);
   return package;

@@ -96,12 +96,12 @@ struct Package {
   PackageChoices choices;
   // In the order of light_field.cameras. Empty if PackageOfAll() made the package.
   std::vector<PackageImage> images;
-  // One for each frame of the film, [frame - 1]. Empty: not measured, because
+  // One for each frame of the film, [index of the frame]. Empty: not measured, because
   // choices.has_neighbours is false, or because PackageOfAll() made the package.
   std::vector<FrameSurroundings> surroundings;
   // FrameLens's camera distance of each instant of each frame of the film, measured in the whole
-  // light field, [frame - 1][instant]; -1: not measured, because no package has the frame. Empty:
-  // none is measured, or the path has no shutter.
+  // light field, [index of the frame][instant]; -1: not measured, because no package has the frame.
+  // Empty: none is measured, or the path has no shutter.
   std::vector<double> instant_distances_w;
 
   std::vector<FrameId> FrameIds() const;

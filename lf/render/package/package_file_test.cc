@@ -290,6 +290,30 @@ TEST_F(PackageFileTest, ReadsWhatWasWrittenToTheBit) {
   }
 }
 
+TEST_F(PackageFileTest, KeepsTheNumbersOfTheFrames) {
+  Package package = TestPackage();
+  package.path.first_frame = 1001;
+  for (PackageFrame& frame : package.frames) frame.id.value += 1000;
+  Write(package);
+  const Result<Package> read = ReadPackage(path_);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->path.frames(), (FrameNumbers{1001, 12}));
+  EXPECT_EQ(read->FrameIds(), package.FrameIds());
+  for (const FrameId frame : package.path.frames().All())
+    EXPECT_EQ(read->CameraDistance(frame), package.CameraDistance(frame));
+  for (const auto& [first, words] :
+       {std::pair("1000", "frame 1000 is missing"), std::pair("-1", "setting first_frame")}) {
+    Write(package);
+    ASSERT_TRUE(Database::OpenToAppend(path_, kPackageFormat)
+                    .value()
+                    .Execute(std::string("update settings set value = '") + first +
+                             "' where key = 'first_frame'"));
+    const Result<Package> wrong = ReadPackage(path_, {.check_seal = false});
+    ASSERT_FALSE(wrong) << first;
+    EXPECT_NE(wrong.error().message.find(words), std::string::npos) << wrong.error().message;
+  }
+}
+
 // Equal packages have equal checksums, because their bytes are equal.
 TEST_F(PackageFileTest, TheSamePackageHasTheSameBytes) {
   Write(TestPackage());

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "lf/core/frame_numbers.h"
 #include "lf/light_field/model/brackets.h"
 #include "lf/render/package/package_file.h"
 #include "lf/render/package/package_format.h"
@@ -83,6 +84,11 @@ Result<void> Reader::ReadSettings() {
   LF_RETURN_IF_ERROR(ReadNumber());
   LF_ASSIGN_OR_RETURN(package_.path.fps, settings_.Number("fps", 1e-3, 1e6));
   LF_ASSIGN_OR_RETURN(package_.path.unit_m, settings_.Number("path_unit_m", 1e-9, 1e9));
+  if (const std::string& first = settings_.Text("first_frame"); !first.empty()) {
+    const std::optional<uint32_t> number = ParseFrameNumber(first);
+    if (!number) return settings_.Wrong("first_frame", "the number of a frame");
+    package_.path.first_frame = *number;
+  }
   return ReadChoices();
 }
 
@@ -227,7 +233,7 @@ Result<void> Reader::ReadImage(const Statement& row) {
 
 // Reads the surroundings of a frame. Either all frames of a film have them, or none.
 Result<void> Reader::ReadSurroundings(const std::vector<double>& numbers, int64_t frame) {
-  const size_t before = static_cast<size_t>(frame) - 1;
+  const size_t before = package_.path.frame_count() - 1;
   if (numbers.empty() && package_.surroundings.empty()) return {};
   const bool has_recorded = numbers.size() == kSurroundingsNumbers + 1;
   const bool are_sane = (numbers.size() == kSurroundingsNumbers || has_recorded) &&
@@ -269,7 +275,7 @@ Result<RenderCamera> Reader::CameraIn(const Statement& row, int column,
                        plate.height_px == film.front().pinhole.intrinsics.height_px);
   if (!are_finite || !IsRenderCamera(camera) || !has_size)
     return Damaged(fmt::format(
-        "the camera of {} has impossible values, or another resolution than frame 1", of));
+        "the camera of {} has impossible values, or another resolution than the first frame", of));
   return camera;
 }
 
@@ -295,12 +301,12 @@ Result<void> Reader::ReadInstants() {
       database_, "select frame, instant, camera, camera_distance from instants order by rowid",
       [&](const Statement& row) -> Result<void> {
         const auto index = static_cast<int64_t>(film.instants.size());
-        const int64_t frame = index / samples + 1, instant = index % samples + 1;
+        const int64_t frame = film.first_frame + index / samples, instant = index % samples + 1;
         LF_ASSIGN_OR_RETURN(const int64_t row_frame, row.Integer(0));
         LF_ASSIGN_OR_RETURN(const int64_t row_instant, row.Integer(1));
         const std::string of = fmt::format("instant {} of frame {}", instant, frame);
         if (row_frame != frame || row_instant != instant ||
-            frame > static_cast<int64_t>(film.frame_count()))
+            index / samples >= static_cast<int64_t>(film.frame_count()))
           return Damaged(
               fmt::format("expected {}, found instant {} of frame {}", of, row_instant, row_frame));
         LF_ASSIGN_OR_RETURN(const RenderCamera camera, CameraIn(row, 2, of));
@@ -318,8 +324,9 @@ Result<void> Reader::ReadInstants() {
   const std::vector<double>& distances_w = package_.instant_distances_w;
   const auto is_measured = [](double distance_w) { return distance_w >= 0; };
   for (const PackageFrame& frame : package_.frames) {
-    const auto first = distances_w.begin() +
-                       static_cast<ptrdiff_t>((frame.id.value - 1) * static_cast<size_t>(samples));
+    const auto first =
+        distances_w.begin() +
+        static_cast<ptrdiff_t>(film.frames().IndexOf(frame.id) * static_cast<size_t>(samples));
     const auto count = std::count_if(first, first + samples, is_measured);
     if (count != (package_.choices.has_neighbours ? samples : 0))
       return Damaged(fmt::format(
@@ -345,7 +352,7 @@ Result<void> Reader::ReadSurfaces() {
         const bool is_frame = i < film.cameras.size();
         LF_ASSIGN_OR_RETURN(const int64_t frame, row.Integer(0));
         LF_ASSIGN_OR_RETURN(const int64_t instant, row.Integer(1));
-        if (frame != static_cast<int64_t>(is_frame ? i + 1 : k / samples + 1) ||
+        if (frame != static_cast<int64_t>(film.first_frame + (is_frame ? i : k / samples)) ||
             instant != static_cast<int64_t>(is_frame ? 0 : k % samples + 1))
           return Damaged("its focal surfaces are not in the order of frames and instants");
         LF_ASSIGN_OR_RETURN(const std::string_view pieces, row.Blob(2));
@@ -370,32 +377,35 @@ Result<void> Reader::ReadFrames() {
     if (!read) return settings_.Wrong("transmission", read.error().message);
     transmission_ = std::make_shared<const Transmission>(*read);
   }
-  LF_RETURN_IF_ERROR(
-      ForEachRow(database_,
-                 "select frame, camera, is_rendered, lf_images, rays, surroundings from frames "
-                 "order by frame",
-                 [&](const Statement& row) -> Result<void> {
-                   LF_ASSIGN_OR_RETURN(const int64_t number, row.Integer(0, 1, kMostFrames));
-                   if (number != static_cast<int64_t>(film.frame_count()) + 1)
-                     return Damaged(fmt::format("frame {} is missing", film.frame_count() + 1));
-                   LF_ASSIGN_OR_RETURN(const RenderCamera camera,
-                                       CameraIn(row, 1, fmt::format("frame {}", number)));
-                   film.cameras.push_back(camera);
-                   LF_ASSIGN_OR_RETURN(const int64_t is_rendered, row.Integer(2, 0, 1));
-                   LF_ASSIGN_OR_RETURN(const int64_t images, row.Integer(3, 0, kMostImages));
-                   LF_ASSIGN_OR_RETURN(const int64_t rays, row.Integer(4, 0, INT64_MAX));
-                   LF_ASSIGN_OR_RETURN(const std::string_view surroundings, row.Blob(5));
-                   // LF_RETURN_IF_ERROR cannot be used here, because this lambda is an argument of
-                   // that macro.
-                   const auto read = ReadSurroundings(NumbersOf<double>(surroundings), number);
-                   if (!read || is_rendered == 0) return read;
-                   PackageFrame frame;
-                   frame.id = FrameId{static_cast<uint32_t>(number)};
-                   frame.image_count = static_cast<uint64_t>(images);
-                   frame.ray_count = static_cast<uint64_t>(rays);
-                   package_.frames.push_back(frame);
-                   return {};
-                 }));
+  LF_RETURN_IF_ERROR(ForEachRow(
+      database_,
+      "select frame, camera, is_rendered, lf_images, rays, surroundings from frames "
+      "order by frame",
+      [&](const Statement& row) -> Result<void> {
+        LF_ASSIGN_OR_RETURN(const int64_t number, row.Integer(0, 0, kLargestFrameNumber));
+        const size_t expected = film.first_frame + film.frame_count();
+        if (number != static_cast<int64_t>(expected))
+          return Damaged(fmt::format("frame {} is missing", expected));
+        if (film.frame_count() == kMostFrames)
+          return Damaged(fmt::format("it has more than {} frames", kMostFrames));
+        LF_ASSIGN_OR_RETURN(const RenderCamera camera,
+                            CameraIn(row, 1, fmt::format("frame {}", number)));
+        film.cameras.push_back(camera);
+        LF_ASSIGN_OR_RETURN(const int64_t is_rendered, row.Integer(2, 0, 1));
+        LF_ASSIGN_OR_RETURN(const int64_t images, row.Integer(3, 0, kMostImages));
+        LF_ASSIGN_OR_RETURN(const int64_t rays, row.Integer(4, 0, INT64_MAX));
+        LF_ASSIGN_OR_RETURN(const std::string_view surroundings, row.Blob(5));
+        // LF_RETURN_IF_ERROR cannot be used here, because this lambda is an argument of
+        // that macro.
+        const auto read = ReadSurroundings(NumbersOf<double>(surroundings), number);
+        if (!read || is_rendered == 0) return read;
+        PackageFrame frame;
+        frame.id = FrameId{static_cast<uint32_t>(number)};
+        frame.image_count = static_cast<uint64_t>(images);
+        frame.ray_count = static_cast<uint64_t>(rays);
+        package_.frames.push_back(frame);
+        return {};
+      }));
   if (package_.frames.empty()) return Damaged("it has no frame to render");
   const bool has_all = package_.surroundings.size() == film.frame_count();
   if (package_.choices.has_neighbours ? !has_all : !package_.surroundings.empty())

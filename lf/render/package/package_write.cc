@@ -78,6 +78,8 @@ class Writer {
         {"mode", NameOf(choices.mode)},
         {"fps", fmt::format("{}", package_.path.fps)},
         {"path_unit_m", fmt::format("{}", package_.path.unit_m)}};
+    if (package_.path.first_frame != 1)
+      settings.emplace_back("first_frame", fmt::format("{}", package_.path.first_frame));
     if (package_.whole_virtual_count > 0)
       settings.emplace_back("light_field.virtual", fmt::format("{}", package_.whole_virtual_count));
     if (const TransmissionPtr& of_film = package_.path.cameras.front().transmission)
@@ -151,22 +153,22 @@ class Writer {
         Statement insert,
         database_.Prepare("insert into frames values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"));
     auto rendered = package_.frames.begin();
-    for (uint32_t n = 1; n <= package_.path.frame_count(); ++n) {
-      const RenderCamera& camera = package_.path.Camera(FrameId{n});
+    for (const FrameId id : path.frames().All()) {
+      const RenderCamera& camera = path.Camera(id);
       const Vec3 centre = camera.pinhole.CentreWorld();
       const auto numbers = NumbersOfCamera(camera);
-      const bool is_rendered = rendered != package_.frames.end() && rendered->id.value == n;
+      const bool is_rendered = rendered != package_.frames.end() && rendered->id == id;
       PackageFrame frame;
       if (is_rendered) frame = *rendered++;
-      insert.Bind(0, int64_t{n}).Bind(1, camera.time_s);
+      insert.Bind(0, int64_t{id.value}).Bind(1, camera.time_s);
       insert.Bind(2, centre.x()).Bind(3, centre.y()).Bind(4, centre.z());
       insert.Bind(5, 2 * camera.aperture.radius_w).Bind(6, camera.focus_distance_w);
       insert.BindBlob(7, BytesOf(std::span<const double>(numbers)));
       insert.Bind(8, int64_t{is_rendered}).Bind(9, static_cast<int64_t>(frame.image_count));
       insert.Bind(10, static_cast<int64_t>(frame.ray_count));
-      const std::optional<double> distance_w = package_.CameraDistance(FrameId{n});
+      const std::optional<double> distance_w = package_.CameraDistance(id);
       insert.Bind(11, distance_w ? *distance_w : -1.0);  // -1: not measured
-      const std::vector<double> surroundings = SurroundingsOf(n);
+      const std::vector<double> surroundings = SurroundingsOf(id);
       insert.BindBlob(12, BytesOf(std::span<const double>(surroundings)));
       LF_RETURN_IF_ERROR(insert.Run());
     }
@@ -178,12 +180,12 @@ class Writer {
     LF_RETURN_IF_ERROR(database_.Execute(kInstantsTable));
     LF_ASSIGN_OR_RETURN(Statement insert,
                         database_.Prepare("insert into instants values (?, ?, ?, ?, ?)"));
-    for (uint32_t n = 1; n <= package_.path.frame_count(); ++n) {
-      const std::span<const RenderCamera> instants = package_.path.Instants(FrameId{n});
-      const std::span<const double> distances_w = package_.InstantDistances(FrameId{n});
+    for (const FrameId id : package_.path.frames().All()) {
+      const std::span<const RenderCamera> instants = package_.path.Instants(id);
+      const std::span<const double> distances_w = package_.InstantDistances(id);
       for (size_t k = 0; k < instants.size(); ++k) {
         const std::vector<double> numbers = NumbersOfCamera(instants[k]);
-        insert.Bind(0, int64_t{n}).Bind(1, static_cast<int64_t>(k + 1));
+        insert.Bind(0, int64_t{id.value}).Bind(1, static_cast<int64_t>(k + 1));
         insert.Bind(2, instants[k].time_s);
         insert.BindBlob(3, BytesOf(std::span<const double>(numbers)));
         insert.Bind(4, distances_w.empty() ? -1.0 : distances_w[k]);  // -1: not measured
@@ -199,26 +201,26 @@ class Writer {
     LF_ASSIGN_OR_RETURN(Statement insert,
                         database_.Prepare("insert into focal_surfaces values (?, ?, ?)"));
     const CameraPath& path = package_.path;
-    const auto write = [&](const RenderCamera& camera, size_t frame,
+    const auto write = [&](const RenderCamera& camera, size_t index,
                            size_t instant) -> Result<void> {
       LF_CHECK(camera.surface != nullptr);
       const std::string bytes = camera.surface->Bytes();
-      insert.Bind(0, static_cast<int64_t>(frame)).Bind(1, static_cast<int64_t>(instant));
+      insert.Bind(0, int64_t{path.frames().At(index).value}).Bind(1, static_cast<int64_t>(instant));
       insert.BindBlob(2, bytes);
       return insert.Run();
     };
     for (size_t i = 0; i < path.cameras.size(); ++i)
-      LF_RETURN_IF_ERROR(write(path.cameras[i], i + 1, 0));
+      LF_RETURN_IF_ERROR(write(path.cameras[i], i, 0));
     const auto samples = static_cast<size_t>(path.shutter.samples);
     for (size_t i = 0; i < path.instants.size(); ++i)
-      LF_RETURN_IF_ERROR(write(path.instants[i], i / samples + 1, i % samples + 1));
+      LF_RETURN_IF_ERROR(write(path.instants[i], i / samples, i % samples + 1));
     return {};
   }
 
   // Returns the numbers that describe the surroundings of a frame; empty if they were not measured.
-  std::vector<double> SurroundingsOf(uint32_t frame) const {
+  std::vector<double> SurroundingsOf(FrameId frame) const {
     if (package_.surroundings.empty()) return {};
-    const FrameSurroundings& around = package_.surroundings[frame - 1];
+    const FrameSurroundings& around = package_.surroundings[package_.path.frames().IndexOf(frame)];
     const Vec3& middle = around.middle_world;
     std::vector<double> numbers = {around.camera_distance_w,
                                    around.pixel_rad,

@@ -414,6 +414,7 @@ PlateNotes FilmRenderer::NotesOf(size_t f) const {
                                     film_.Collects() ? Progress(f).rays : FrameRays(), lenses(f),
                                     setup_.light_field().encoding);
   notes.fps = setup_.path().fps;
+  notes.first_frame = setup_.path().first_frame;
   notes.shutter = ShutterOf(setup_.path(), id);
   notes.estimator = film_.reading.estimator;
   notes.develop.smooth_below = film_.smooth_below;

@@ -145,13 +145,13 @@ Result<void> FilmSetup::PlanSlabs() {
   if (!film_.Rebins() || slabs_) return {};
   const SelectOptions select = Select();
   std::vector<SampledFrame> frames;
-  for (uint32_t n = 1; n <= path().frame_count(); ++n) {
-    const RenderCamera& camera = path().Camera(FrameId{n});
-    const std::optional<FrameSampling> known = SamplingOf(package_, FrameId{n});
+  for (const FrameId frame : path().frames().All()) {
+    const RenderCamera& camera = path().Camera(frame);
+    const std::optional<FrameSampling> known = SamplingOf(package_, frame);
     frames.push_back({camera, known ? *known : SamplingOf(index_, camera, select, pool_)});
     if (work_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
   }
-  slabs_.emplace(frames, film_.rebin.query, film_.rebin.slab);
+  slabs_.emplace(frames, path().first_frame, film_.rebin.query, film_.rebin.slab);
   return {};
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "lf/camera/thin_lens.h"
+#include "lf/pixels/files/picture_header.h"
 
 namespace lf {
 namespace {
@@ -145,6 +146,8 @@ ImageMetadata FileMetadata(const PlateNotes& notes, FrameFormat format, ColourSp
                                          notes.fps, notes.version, notes.shutter);
   if (const std::string digest = notes.FocalSurface(); !digest.empty())
     metadata.emplace_back("lf:focal_surface", digest);
+  if (notes.first_frame != 1)
+    metadata.emplace_back(kFirstFrameText, fmt::format("{}", notes.first_frame));
   if (notes.ranks_done)
     metadata.emplace_back("lf:finished_early_before_rank", static_cast<int>(*notes.ranks_done));
   if (!IsExr(format)) return metadata;

@@ -60,7 +60,7 @@ Result<void> WritePicture(const PlateNotes& notes, DevelopedFrame picture,
 }
 
 FilmFiles FilesOfFilm(const CameraPath& path, const RenderOptions& options) {
-  const Intrinsics& plate = path.Camera(FrameId{1}).pinhole.intrinsics;
+  const Intrinsics& plate = path.cameras.front().pinhole.intrinsics;
   return {options.folder.output_folder,
           options.folder.format,
           options.folder.picture.colours,

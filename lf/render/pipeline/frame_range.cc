@@ -30,7 +30,7 @@ bool TakeCharacter(std::string_view* text, char character) {
 
 }  // namespace
 
-Result<std::vector<FrameId>> ParseFrameRange(std::string_view text, size_t frame_count,
+Result<std::vector<FrameId>> ParseFrameRange(std::string_view text, const FrameNumbers& all,
                                              const char* option, FramesBeyondEnd beyond_end) {
   std::vector<FrameId> frames;
   std::string_view rest = text;
@@ -52,12 +52,11 @@ Result<std::vector<FrameId>> ParseFrameRange(std::string_view text, size_t frame
       return UsageError(
           fmt::format("{} \'{}\': the step is 0, expected at least 1 after x or :, as in 1-100x2",
                       option, text));
-    if (beyond_end == FramesBeyondEnd::kLeftOut && first > frame_count) continue;
-    if (beyond_end == FramesBeyondEnd::kLeftOut)
-      last = static_cast<uint32_t>(std::min<size_t>(last, frame_count));
-    if (first < 1 || last > frame_count)
-      return UsageError(fmt::format("{} \'{}\': expected frames from 1 to {}, the last frame",
-                                    option, text, frame_count));
+    if (beyond_end == FramesBeyondEnd::kLeftOut && first > all.last()) continue;
+    if (beyond_end == FramesBeyondEnd::kLeftOut) last = std::min(last, all.last());
+    if (first < all.first || last > all.last())
+      return UsageError(fmt::format("{} \'{}\': expected frames from {} to {}, the last frame",
+                                    option, text, all.first, all.last()));
     if ((last - first) / step >= kMostNamed - frames.size())
       return UsageError(
           fmt::format("{}: names more than {} frames, repeated frames included: give fewer frames",

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "lf/core/frame_numbers.h"
 #include "lf/core/ids.h"
 #include "lf/core/result.h"
 
@@ -14,10 +15,10 @@ namespace lf {
 enum class FramesBeyondEnd { kError, kLeftOut };
 
 // Returns the frames in ascending order, each once. kUsage: the text does not have this form, a
-// frame is not in 1 .. frame_count, or more than 10 million frames are named, counting repeats. The
+// frame is none of `all`, or more than 10 million frames are named, counting repeats. The
 // message names `option`.
-//   beyond_end  kLeftOut: frames after frame_count are left out, so that the result may be empty
-Result<std::vector<FrameId>> ParseFrameRange(std::string_view text, size_t frame_count,
+//   beyond_end  kLeftOut: frames after the last one are left out, so that the result may be empty
+Result<std::vector<FrameId>> ParseFrameRange(std::string_view text, const FrameNumbers& all,
                                              const char* option = "{frames}",
                                              FramesBeyondEnd beyond_end = FramesBeyondEnd::kError);
 

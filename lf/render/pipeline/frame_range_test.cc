@@ -7,7 +7,7 @@ namespace lf {
 namespace {
 
 std::vector<uint32_t> Numbers(std::string_view text, size_t count = 100) {
-  const Result<std::vector<FrameId>> frames = ParseFrameRange(text, count);
+  const Result<std::vector<FrameId>> frames = ParseFrameRange(text, {1, count});
   std::vector<uint32_t> numbers;
   if (frames)
     for (const FrameId frame : *frames) numbers.push_back(frame.value);
@@ -31,7 +31,7 @@ TEST(FrameRange, AStepMayFollowAColon) {
 
 TEST(FrameRange, FramesBeyondTheEndMayBeLeftOut) {
   const auto clamped = [](std::string_view text) {
-    return ParseFrameRange(text, 72, "{frames}", FramesBeyondEnd::kLeftOut);
+    return ParseFrameRange(text, {1, 72}, "{frames}", FramesBeyondEnd::kLeftOut);
   };
   EXPECT_EQ(clamped("71-80").value(), (std::vector<FrameId>{FrameId{71}, FrameId{72}}));
   EXPECT_EQ(clamped("72-75").value(), (std::vector<FrameId>{FrameId{72}}));
@@ -42,17 +42,32 @@ TEST(FrameRange, FramesBeyondTheEndMayBeLeftOut) {
   EXPECT_FALSE(clamped("80-90x0"));
 }
 
+TEST(FrameRange, NumbersAreThoseOfThePath) {
+  const FrameNumbers plate = {1001, 48};
+  EXPECT_EQ(ParseFrameRange("1001-1002,1048", plate).value(),
+            (std::vector<FrameId>{{1001}, {1002}, {1048}}));
+  EXPECT_EQ(ParseFrameRange("0-1", {0, 2}).value(), (std::vector<FrameId>{{0}, {1}}));
+  EXPECT_EQ(ParseFrameRange("1047-1060", plate, "{frames}", FramesBeyondEnd::kLeftOut).value(),
+            (std::vector<FrameId>{{1047}, {1048}}));
+  for (const char* text : {"1", "1000-1002", "1048-1049"})
+    EXPECT_EQ(
+        ParseFrameRange(text, plate).error().message,
+        std::string("{frames} '") + text + "': expected frames from 1001 to 1048, the last frame");
+  // Frames before the first are a mistake of numbering, which is never left out.
+  EXPECT_FALSE(ParseFrameRange("1-48", plate, "{frames}", FramesBeyondEnd::kLeftOut));
+}
+
 TEST(FrameRange, RefusesWhatItDoesNotUnderstand) {
   for (const char* text : {"", "x", "0", "5-", "-5", "5-3", "1-101", "1-9x0", "1,", "1 2", "1-9x",
                            "99999999999", "1.5"}) {
-    const auto frames = ParseFrameRange(text, 100);
+    const auto frames = ParseFrameRange(text, {1, 100});
     ASSERT_FALSE(frames) << text;
     EXPECT_EQ(frames.error().kind, ErrorKind::kUsage);
   }
   std::string repeated;
   for (int i = 0; i < 10; ++i) repeated += "1-1000000,";
-  EXPECT_FALSE(ParseFrameRange(repeated + "1", 1'000'000));
-  const auto says = [](const char* text) { return ParseFrameRange(text, 4).error().message; };
+  EXPECT_FALSE(ParseFrameRange(repeated + "1", {1, 1'000'000}));
+  const auto says = [](const char* text) { return ParseFrameRange(text, {1, 4}).error().message; };
   EXPECT_NE(says("4-1").find("1-4"), std::string::npos);
   EXPECT_NE(says("1-4x0").find("at least 1"), std::string::npos);
   EXPECT_NE(says("2-7").find("expected frames from 1 to 4"), std::string::npos);

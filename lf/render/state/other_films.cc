@@ -56,9 +56,10 @@ Result<FramesThatStay> FindFramesThatStay(const fs::path& report, const FilmInFo
     std::string difference;
     if (all) {
       difference = all->Text("was rendered with", "this call has");
-    } else if (frame.frame.value > film.path.frame_count()) {
-      difference = fmt::format("belongs to frame {}, but the camera path has {} frames",
-                               frame.frame.value, film.path.frame_count());
+    } else if (!film.path.frames().Has(frame.frame)) {
+      difference =
+          fmt::format("belongs to frame {}, but the camera path has the frames {} to {}",
+                      frame.frame.value, film.path.frames().first, film.path.frames().last());
     } else if (const auto camera =
                    FirstDifference(frame.camera, InputsOfFrame(film.path, frame.frame))) {
       difference = camera->Text("was rendered with", "this call has");

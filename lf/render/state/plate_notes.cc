@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "lf/core/frame_numbers.h"
 #include "lf/core/parse_number.h"
 #include "lf/core/value_named.h"
 #include "lf/render/collect/frame_lens.h"
@@ -186,6 +187,8 @@ PlateEntries TextOf(const PlateNotes& notes) {
       {"plate.rays_tested", fmt::format("{}", notes.rays.tested_count)},
       {"plate.rays_accepted", fmt::format("{}", notes.rays.accepted_count)},
   };
+  if (notes.first_frame != 1)
+    text.emplace_back("plate.first_frame", fmt::format("{}", notes.first_frame));
   if (HasShape(camera))
     text.emplace_back("plate.lens_shape", words({camera.aperture.ratio, camera.aperture.roundness,
                                                  camera.hood.distance_w, camera.hood.radius_w}));
@@ -226,7 +229,7 @@ Result<PlateNotes> PlateNotesOf(const PlateEntries& entries, int width_px, int h
         fmt::format("{}, because this program has another version of the ray model: use the "
                     "program that rendered the plate, or render it again",
                     kRayModelVersion));
-  notes.frame.value = static_cast<uint32_t>(reader.WholeNumber("plate.frame", UINT32_MAX));
+  notes.frame.value = static_cast<uint32_t>(reader.WholeNumber("plate.frame", kLargestFrameNumber));
   const std::vector<double> k = reader.Numbers("plate.intrinsics", 5);
   Intrinsics& intrinsics = notes.camera.pinhole.intrinsics;
   intrinsics = {k[0], k[1], k[2], k[3], k[4], width_px, height_px};
@@ -273,6 +276,9 @@ Result<PlateNotes> PlateNotesOf(const PlateEntries& entries, int width_px, int h
   notes.camera.focus_tilt = {lens[4], lens[5]};
   notes.camera.unit_m = lens[6];
   notes.fps = reader.Numbers("plate.fps", 1)[0];
+  if (FindEntry(entries, "plate.first_frame") != nullptr)
+    notes.first_frame =
+        static_cast<uint32_t>(reader.WholeNumber("plate.first_frame", kLargestFrameNumber));
   if (FindEntry(entries, "plate.shutter") != nullptr) {
     notes.shutter = ShutterIn(reader.Text("plate.shutter"));
     if (!notes.shutter)

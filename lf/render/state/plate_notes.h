@@ -25,6 +25,7 @@ struct PlateNotes {
   FrameId frame;
   RenderCamera camera;
   double fps = 0;
+  uint32_t first_frame = 1;                            // number of the first frame of the film
   std::optional<FrameShutter> shutter = std::nullopt;  // unset if the path has none
   // FocalSurface::Digest() of the frame's focal surface, in notes that were read from a plate,
   // which names the surface but does not hold it (camera.surface is null). Empty: there is none.

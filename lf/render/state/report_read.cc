@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "lf/core/file.h"
+#include "lf/core/frame_numbers.h"
 #include "lf/render/state/record_fields.h"
 #include "lf/render/state/report.h"
 
@@ -56,7 +57,8 @@ FrameReport FrameFromJson(const Json& json, std::string* fault) {
     if (noise_fields.Find("reached") != nullptr)
       noise_fields.Get("reached", &frame.noise->reached.emplace());
   }
-  if (frame.frame.value == 0 && fault->empty()) *fault = "\"frame\": expected a number from 1";
+  if (frame.frame.value > kLargestFrameNumber && fault->empty())
+    *fault = fmt::format("\"frame\": expected a number from 0 to {}", kLargestFrameNumber);
   return frame;
 }
 

@@ -33,9 +33,8 @@ std::optional<FrameId> FrameOf(const fs::path& path) {
   constexpr std::string_view kPrefix = "frame_";
   const std::string stem = path.stem().string();
   if (!stem.starts_with(kPrefix)) return std::nullopt;
-  const auto number = ParseWhole<uint32_t>(std::string_view(stem).substr(kPrefix.size()));
-  if (!number || *number == 0) return std::nullopt;
-  return FrameId{*number};
+  const auto number = ParseFrameNumber(std::string_view(stem).substr(kPrefix.size()));
+  return number ? std::optional(FrameId{*number}) : std::nullopt;
 }
 
 // Advice for a damaged file: only the work that it holds is done again if it is removed.
@@ -333,11 +332,11 @@ Result<void> RunState::Check(const std::string& place, FrameId frame, const RunI
       "give the same inputs and options, or another {output}, or start again with {overwrite} "
       "instead of "
       "{resume}";
-  if (frame.value > path_.frame_count())
+  if (!path_.frames().Has(frame))
     return UsageError(fmt::format(
-        "{}: belongs to frame {}, but the camera path has {} frames, so that {{resume}} cannot "
-        "use the file; {}",
-        place, frame.value, path_.frame_count(), kAdvice));
+        "{}: belongs to frame {}, but the camera path has the frames {} to {}, so that {{resume}} "
+        "cannot use the file; {}",
+        place, frame.value, path_.frames().first, path_.frames().last(), kAdvice));
   RunInputs wanted = options_.rays;
   if (has_picture) wanted = Joined(wanted, options_.picture);
   wanted = Joined(wanted, InputsOfFrame(path_, frame));

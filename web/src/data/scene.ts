@@ -5,7 +5,8 @@ export type Vec3 = [number, number, number];
 
 export interface PathHead {
   id: string;
-  frames: number;
+  frames: number; // number of frames
+  first_frame: number; // number of the first one
   shown_step: number; // distance between two shown frames (PathFrames); 1: all are shown
   fps: number;
   unit_m: number;
@@ -13,6 +14,11 @@ export interface PathHead {
   height: number;
   widest_radius: number; // radius of the widest opening of all frames; 0 unless blades turn as the lens closes
   transmission?: string; // of the lens, as a path file states it; missing if there is none
+}
+
+// Returns the number of the last frame.
+export function lastFrame(path: PathHead): number {
+  return path.first_frame + path.frames - 1;
 }
 
 // The data of the event that the path's file has changed.

@@ -331,7 +331,7 @@ export class EditPanel {
           { class: key.index === now ? "now" : "" },
           element(
             "button",
-            { click: () => state.setFrame(1 + Math.round(key.time * state.path.fps)) },
+            { click: () => state.setFrame(state.frameAt(key.time)) },
             seconds(key.time),
           ),
           element("span", { class: "value" }, valueText(key.value)),
@@ -402,7 +402,7 @@ export class EditPanel {
     const { state } = this;
     const row = (label: string, ...inputs: (HTMLElement | string)[]) =>
       element("div", { class: "row" }, element("label", {}, label), ...inputs);
-    const rest = () => Math.max(1, (state.path.frames - state.frame) / state.path.fps);
+    const rest = () => Math.max(1, (state.lastFrame - state.frame) / state.path.fps);
 
     const angle = this.number("Degrees of the orbit", () => 20);
     const orbitSeconds = this.number("Seconds of the orbit", rest);

@@ -79,10 +79,11 @@ export class FramePanel {
       ["LF images", `${use.ids.length.toLocaleString("en-US")} of ${shortNumber(use.ofCameras.length)}`],
       ["Pixels of each", use.ids.length > 0 ? `${percent(share)} on average` : "none"],
     ];
-    if (film && film.done >= frame)
+    const index = this.state.frames!.indexOf(frame);
+    if (film && film.done > index)
       rows.push(
-        ["Rays to be read", shortNumber(film.rays[frame - 1])],
-        ["For each element", `about ${precise(film.rays[frame - 1] / (path.width * path.height), 3)}`],
+        ["Rays to be read", shortNumber(film.rays[index])],
+        ["For each element", `about ${precise(film.rays[index] / (path.width * path.height), 3)}`],
       );
     const holder = scene.packages.find((one) => one.frames.includes(frame));
     if (holder && path.id === scene.path.id) rows.push(["Package", holder.name]);

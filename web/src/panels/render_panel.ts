@@ -219,7 +219,7 @@ export class RenderPanel {
 
   private drawStrip(watch: RenderFacts): void {
     const { state } = this;
-    const frames = watch.frames.filter((one) => one.frame <= state.path.frames);
+    const frames = watch.frames.filter((one) => one.frame >= state.path.first_frame && one.frame <= state.lastFrame);
     const finished = frames.filter((one) => one.finished).length;
     this.strip.replaceChildren(
       element(

@@ -4,9 +4,10 @@ import { test } from "node:test";
 import { cameraAt } from "../live/test_camera";
 import { PathFrames } from "../../src/path_frames";
 
-const head = (frames: number, shownStep: number) => ({
+const head = (frames: number, shownStep: number, firstFrame = 1) => ({
   id: "0",
   frames,
+  first_frame: firstFrame,
   shown_step: shownStep,
   fps: 10,
   unit_m: 1,
@@ -28,6 +29,23 @@ test("a short film has the cameras of all frames", () => {
     [1, 2, 3].map((frame) => frames.speed(frame)),
     [10, 20, 20],
   );
+});
+
+test("frames have the numbers of the path", () => {
+  const frames = new PathFrames(
+    head(7, 3, 1001),
+    [0, 3, 6].map((x) => cameraAt([x, 0, 0])),
+  );
+  assert.deepEqual(
+    [0, 1, 2].map((index) => frames.frameOf(index)),
+    [1001, 1004, 1007],
+  );
+  assert.deepEqual(
+    [1001, 1003, 1004, 1007].map((frame) => frames.indexOf(frame)),
+    [0, 0, 1, 2],
+  );
+  assert.equal(frames.camera(1004)!.centre[0], 3);
+  assert.equal(frames.camera(1002), null);
 });
 
 test("a long film has one frame of each step, the last, and blocks that are loaded", async () => {
