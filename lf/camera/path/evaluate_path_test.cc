@@ -125,6 +125,27 @@ TEST(Path, AShiftMayMove) {
   EXPECT_DOUBLE_EQ(path.At(11).pinhole.intrinsics.cx_px, 50);
 }
 
+TEST(Path, KeysMayEase) {
+  TestPath path;
+  path.more =
+      "keyframes:\n"
+      "  focus_distance: [{time: 0, value: 2}, {time: 2, value: 4, interpolation: ease}]\n"
+      "  position: [{time: 0, value: [0, 0, -2]}, {time: 1, value: [1, 0, -2], interpolation: "
+      "ease_in}, {time: 2, value: [2, 0, -2], interpolation: ease_out}]\n";
+  // A quarter of the time has 0.103515625 of the way.
+  EXPECT_NEAR(path.At(6).focus_distance_w, 2 + 2 * 0.103515625, 1e-12);
+  EXPECT_NEAR(path.At(11).focus_distance_w, 3, 1e-12);
+  ExpectNear(path.At(11).pinhole.CentreWorld(), {1, 0, -2});
+  // Both halves have the same speed in their middle, 1 per second: x is 3 x^3 - 2 x^4 for m = 1.
+  ExpectNear(path.At(6).pinhole.CentreWorld(), {3 * 0.125 - 2 * 0.0625, 0, -2});
+  path.more =
+      "keyframes: {focus_distance: [{time: 0, value: 2}, {time: 2, value: 4, interpolation: "
+      "ease_inout}]}\n";
+  EXPECT_NE(path.Error().find("smooth or linear or step or ease or ease_in or ease_out"),
+            std::string::npos)
+      << path.Error();
+}
+
 TEST(Path, TheOpeningHasAShape) {
   TestPath path;
   path.aperture += ", blades: 6, ratio: 1.8, blade_roundness: 0.25";

@@ -53,6 +53,35 @@ TEST(MonotoneCubic, OfOneValueIsConstant) {
   EXPECT_EQ(MonotoneSlopes(std::vector<double>{2}, std::vector<double>{7}), std::vector<double>{0});
 }
 
+TEST(EasedHermite, HasThePolynomialsThatItStates) {
+  const auto at = [](double x, double m, const Rests& rests) {
+    return EasedHermite(2 + 5 * x, 2.0, 7.0, 0.0, 1.0, m / 5, m / 5, rests);
+  };
+  for (const double x : {0.0, 0.1, 0.25, 0.5, 0.8, 1.0})
+    for (const double m : {0.0, 1.0, 2.0, 3.0}) {
+      const double x3 = x * x * x, y = 1 - x;
+      EXPECT_NEAR(at(x, m, {true, true}), 10 * x3 - 15 * x3 * x + 6 * x3 * x * x, 1e-14);
+      EXPECT_NEAR(at(x, m, {true, false}), (4 - m) * x3 + (m - 3) * x3 * x, 1e-14);
+      EXPECT_NEAR(at(x, m, {false, true}), 1 - (4 - m) * y * y * y - (m - 3) * y * y * y * y,
+                  1e-14);
+      EXPECT_EQ(at(x, m, {}), CubicHermite(2 + 5 * x, 2.0, 7.0, 0.0, 1.0, m / 5, m / 5));
+    }
+}
+
+TEST(EasedHermite, StaysBetweenBothValuesToTheLastBit) {
+  for (const Rests rests : {Rests{true, true}, Rests{true, false}, Rests{false, true}})
+    for (const double m : {0.0, 0.4, 2.0, 3.0})
+      for (int i = 0; i <= 100000; ++i) {
+        const double x = i / 100000.0;
+        const double closing = EasedHermite(x, 0.0, 1.0, 4.0, 0.0, -4 * m, -4 * m, rests);
+        const double opening = EasedHermite(x, 0.0, 1.0, 0.0, 4.0, 4 * m, 4 * m, rests);
+        ASSERT_GE(closing, 0) << x << " " << m;
+        ASSERT_GE(opening, 0) << x << " " << m;
+        ASSERT_LE(closing, 4 * (1 + 1e-15)) << x << " " << m;
+        ASSERT_LE(opening, 4 * (1 + 1e-15)) << x << " " << m;
+      }
+}
+
 TEST(CentripetalKnots, AreRootsOfTheDistances) {
   const std::vector<Vec3> points{{0, 0, 0}, {4, 0, 0}, {4, 9, 0}, {4, 9, 0}};
   EXPECT_EQ(CentripetalKnots(points), (std::vector<double>{0, 2, 5, 5}));

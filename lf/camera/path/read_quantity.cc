@@ -50,9 +50,12 @@ bool TurnsHalfway(const Key& a, const Key& b, SmoothCurve curve) {
 }
 
 Interpolation InterpolationOf(const std::string& word) {
-  return word == "step"     ? Interpolation::kStep
-         : word == "linear" ? Interpolation::kLinear
-                            : Interpolation::kSmooth;
+  if (word == "linear") return Interpolation::kLinear;
+  if (word == "step") return Interpolation::kStep;
+  if (word == "ease") return Interpolation::kEase;
+  if (word == "ease_in") return Interpolation::kEaseIn;
+  if (word == "ease_out") return Interpolation::kEaseOut;
+  return Interpolation::kSmooth;
 }
 
 }  // namespace
@@ -252,8 +255,8 @@ std::optional<Key> QuantityReader::ReadKey(const YamlNode& node, const QuantityS
                                  keyframes.units_per_file, errors_);
   std::optional<std::string> word = "smooth";
   if (interpolation)
-    word = ReadWord(*interpolation->value, map.Label("interpolation"), {"smooth", "linear", "step"},
-                    errors_);
+    word = ReadWord(*interpolation->value, map.Label("interpolation"),
+                    {"smooth", "linear", "step", "ease", "ease_in", "ease_out"}, errors_);
   if (!time_s || !reached || !word) return std::nullopt;
   return Key{*time_s, KeyValue(*reached, spec.shape), InterpolationOf(*word)};
 }
