@@ -59,7 +59,7 @@ which our programs restore everything: frames that are rendered with such a file
 
 struct Arguments {
   std::string path, light_field, dataparser, output, format, out_dataparser, transform;
-  std::string rotation_order = "zxy";
+  std::string rotation_order = "zxy", fov_unit;
   std::optional<double> unit_m, ngp_scale, sensor_width_mm, f_number, aperture_diameter_mm;
   std::optional<double> focal_length_mm, focus_distance, fps;
   std::optional<std::pair<int, int>> resolution;
@@ -118,6 +118,11 @@ void AddInput(CLI::App& app, Arguments& a) {
       "Order of the rotations in .chan files\n"
       "zxy: first about z, then about x, then about y. A .chan does not state its order; "
       "zxy is Nuke's default. It is used for PATH and for OUT.");
+  spaces.AddChoice("--fov-unit", a.fov_unit, {"degrees", "radians"},
+                   "Unit of the fields of view in PATH (degrees)\n"
+                   "For paths of nerfstudio and instant-ngp, and .chan files. Without it, a path "
+                   "whose fields of "
+                   "view are all below pi is refused, because they may be radians.");
 }
 
 void AddOutput(CLI::App& app, Arguments& a) {
@@ -227,7 +232,8 @@ void AddPicture(CLI::App& app, Arguments& a) {
       ->check(CLI::Range(1e-6, 1e9));
   picture
       .Add("--focal-length-mm MM", a.focal_length_mm,
-           "Focal length, for a .chan without field of view (50)\n"
+           "Focal length, for a PATH without field of view (50)\n"
+           "For .chan files without it, and for poses that ns-export of nerfstudio wrote. "
            "Together with the width of the sensor, it gives the field of view.")
       ->check(CLI::Range(1e-6, 1e9));
 }
@@ -267,6 +273,7 @@ lf::Result<lf::PathOptions> OptionsOf(const Arguments& a) {
   options.sensor_width_mm = a.sensor_width_mm;
   options.focal_length_mm = a.focal_length_mm;
   options.rotation_order = *lf::RotationOrderOf(a.rotation_order);
+  options.fov_unit = lf::FovUnitOf(a.fov_unit);
   options.f_number = a.f_number;
   options.aperture_diameter_mm = a.aperture_diameter_mm;
   options.focus_distance_w = a.focus_distance;

@@ -129,6 +129,77 @@ class ForeignPathsTest(ProgramTestCase):
                "aperture_size": scale * camera.diameter / 2}
         return key if timestamp is None else {**key, "timestamp": timestamp}
 
+    def test_nerfstudio_with_matrices_in_rows(self):
+        """Scripts write a matrix as NumPy's tolist() does, with or without its last row."""
+        path = json.loads(self.nerfstudio().read_text())
+        for rows in 4, 3:
+            for frame, camera in zip(path["camera_path"], self.cameras):
+                frame["camera_to_world"] = np.reshape(frame["camera_to_world"], (-1, 4))[:rows].tolist()
+            for camera, facts in zip(self.cameras, self.facts(self.write("rows.json", path))["cameras"]):
+                self.agrees(facts, camera.axes, camera.centre, camera.vertical_deg)
+
+    def test_poses_that_nerfstudio_exports(self):
+        """ns-export cameras writes the poses of the trained space, and no intrinsics."""
+        scale, turn, shift = 0.37, rotation(self.generator), np.array([1, -2, 0.5])
+        poses = [{"file_path": f"images/{i}.png",
+                  "transform": np.column_stack([turn @ camera.axes @ OPENGL,
+                                                scale * (turn @ camera.centre + shift)]).tolist()}
+                 for i, camera in enumerate(self.cameras)]
+        file = self.write("transforms_train.json", poses)
+        transform = np.column_stack([turn, shift]).tolist()
+        self.write("dataparser_transforms.json", {"transform": transform, "scale": scale})
+        words = ["--resolution", "300x200", "--focal-length-mm", 27, "--fps", 12, "--json"]
+        vertical = np.degrees(2 * np.arctan(36 / 27 / 2 * 200 / 300))
+        for camera, facts in zip(self.cameras, json.loads(self.succeeds(PATH, file, *words))["cameras"]):
+            self.agrees(facts, camera.axes, camera.centre, vertical)
+        self.assertIn("no field of view (that of a lens of 50 mm", self.call(INFO, file).stderr)
+        self.fails(3, ["ns-export cameras", "no intrinsics", "transforms.json"], RENDERER, file, file, "-o",
+                   self.folder / "frames")
+
+    def test_radians_are_never_taken_for_degrees(self):
+        path = json.loads(self.nerfstudio().read_text())
+        for frame in path["camera_path"]:
+            frame["fov"] = np.radians(frame["fov"])
+        chan = self.folder / "radians.chan"
+        chan.write_text("1 0 0 0 0 0 0 0.87\n")
+        key = {"R": [0, 0, 0, 1], "T": [0, 0, 0], "slice": 1, "scale": 1, "fov": 0.87, "aperture_size": 0}
+        for file in self.write("radians.json", path), chan, self.write("base_cam.json", {"path": [key]}):
+            for program in INFO, PATH:
+                self.fails(3, ["expected degrees", "lfpath --fov-unit radians"], program, file)
+            self.succeeds(PATH, file, "--fov-unit", "degrees", "-q")
+        told = json.loads(self.succeeds(PATH, self.folder / "radians.json", "--fov-unit", "radians", "--json"))
+        for camera, facts in zip(self.cameras, told["cameras"]):
+            self.agrees(facts, camera.axes, camera.centre, camera.vertical_deg)
+        self.fails(3, ["in radians"], PATH, self.nerfstudio(), "--fov-unit", "radians")
+
+    def test_a_long_lens_of_our_own_is_not_asked_for_its_unit(self):
+        """A path that we wrote states the field of view twice."""
+        text = LIVELY.replace("focal_length_mm: 40, ", "focal_length_mm: 900, ")
+        (self.folder / "tele.yaml").write_text(text.replace("breathing: true", "breathing: false"))
+        for form in "nerfstudio", "instant-ngp":
+            file = self.folder / f"{form}.json"
+            self.succeeds(PATH, self.folder / "tele.yaml", "-o", file, "--format", form)
+            self.assertLess(self.facts(file)["cameras"][0]["field_of_view_deg"][1], 3)
+
+    def test_files_of_other_programs_are_named(self):
+        for name, text, words in (
+                ("scene.fbx", "Kaydara FBX Binary  ", "FBX scene"), ("scene.abc", "Ogawa", "Alembic scene"),
+                ("scene.usda", "#usda 1.0\n(\n)\n", "USD scene"), ("scene.usdz", "PK", "USD scene"),
+                ("scene.gltf", '{"asset": {"version": "2.0"}}', "glTF scene"), ("scene.blend", "BLENDER", "Blender"),
+                ("comp.nk", "set cut_paste_input [stack 0]\n", "script of Nuke"),
+                ("export.py", "import hou\n", "script of Python"),
+                ("take.csv", "Frame,Location X\n1,0\n", "such as Unreal"), ("walk.bvh", "HIERARCHY\n", "skeleton"),
+                ("points.ply", "ply\nformat ascii 1.0\n", "PLY file"), ("film.mp4", "\0\0\0\x18ftypmp42", "a video")):
+            (self.folder / name).write_text(text)
+            self.fails(3, [words, "is not read as a camera path: "], INFO, self.folder / name)
+
+    def test_a_file_of_a_colmap_model_stands_for_the_model(self):
+        folder = self.calibration("colmap")
+        model = folder / "sparse" / "0" if (folder / "sparse").is_dir() else folder
+        self.assertEqual(self.facts(model / "images.txt"), self.facts(folder))
+        (model / "cameras.txt").unlink()
+        self.fails(3, ["one file of a COLMAP model", "give this folder"], INFO, model / "images.txt")
+
     def test_instant_ngp_with_its_lens(self):
         """With order 0 and a loop, six frames are the six keyframes."""
         path = self.write("base_cam.json", {"path": [self.ngp_key(c) for c in self.cameras], "spline_order": 0,

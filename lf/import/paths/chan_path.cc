@@ -14,7 +14,6 @@
 namespace lf {
 namespace {
 
-constexpr double kDefaultFocalLength_mm = 50;
 constexpr double kLargestAngle_deg = 1e6;  // beyond it, rounding would be seen
 constexpr double kLargestFrame = 1e9;
 constexpr const char* kColumns =
@@ -24,7 +23,7 @@ constexpr const char* kColumns =
 struct ChanLine {
   double frame = 0;
   Mat34 world_from_camera;
-  std::optional<double> fov_deg;
+  std::optional<double> fov;  // in the unit of the file
 };
 
 Result<double> NumberWithin(TextWords* words, const char* name, double limit) {
@@ -36,7 +35,7 @@ Result<double> NumberWithin(TextWords* words, const char* name, double limit) {
   return number;
 }
 
-Result<ChanLine> ReadLine(TextWords* words, RotationOrder order) {
+Result<ChanLine> ReadLine(TextWords* words, const PathOptions& options) {
   ChanLine line;
   LF_ASSIGN_OR_RETURN(line.frame, NumberWithin(words, "the frame number", kLargestFrame));
   if (line.frame != std::round(line.frame))
@@ -50,23 +49,18 @@ Result<ChanLine> ReadLine(TextWords* words, RotationOrder order) {
   for (int i = 0; i < 3; ++i) {
     LF_ASSIGN_OR_RETURN(angles_deg[i], NumberWithin(words, kAngles[i], kLargestAngle_deg));
   }
-  line.world_from_camera << RotationOfAngles(angles_deg * RadiansFromDegrees(1), order), position;
+  line.world_from_camera << RotationOfAngles(angles_deg * RadiansFromDegrees(1),
+                                             options.rotation_order),
+      position;
   if (words->AtLineEnd()) return line;
-  LF_ASSIGN_OR_RETURN(line.fov_deg, words->Number("the vertical field of view"));
-  if (!(*line.fov_deg > 0 && *line.fov_deg < 180))
-    return words->Fault(fmt::format(
-        "the vertical field of view is {} degrees: expected above 0 and below 180", *line.fov_deg));
+  LF_ASSIGN_OR_RETURN(line.fov, words->Number("the vertical field of view"));
+  const NumberRule rule = FovRule(options);
+  if (!rule.holds(*line.fov))
+    return words->Fault(
+        fmt::format("the vertical field of view is {}: expected {}", *line.fov, rule.expected));
   if (!words->AtLineEnd())
     return words->Fault(fmt::format("has more than 8 columns: {}", kColumns));
   return line;
-}
-
-// Returns the intrinsics of a lens of options.focal_length_mm on the sensor.
-Intrinsics IntrinsicsOfLens(const PathOptions& options, const std::array<int, 2>& resolution_px) {
-  Intrinsics k = IntrinsicsOfFov(90, resolution_px);
-  k.fx_px = k.fy_px = resolution_px[0] * options.focal_length_mm.value_or(kDefaultFocalLength_mm) /
-                      options.sensor_width_mm.value_or(kDefaultSensorWidth_mm);
-  return k;
 }
 
 // Checks that the frame follows the one before, because a gap would make the film shorter.
@@ -85,35 +79,30 @@ Result<ForeignPath> ParseChan(ByteStream stream, const PathOptions& options) {
   const std::array<int, 2> resolution_px = ResolutionOr(options, &path);
   TextWords words(&stream);
   std::optional<double> before;
-  bool lacks_fov = false, states_fov = false;
+  std::optional<Intrinsics> of_lens;  // of lines without a field of view
   while (words.NextEntry()) {
     if (path.cameras.size() == kMostFrames)
       return words.Fault(fmt::format("is one line too many: expected at most {}", kMostFrames));
-    LF_ASSIGN_OR_RETURN(const ChanLine line, ReadLine(&words, options.rotation_order));
+    LF_ASSIGN_OR_RETURN(const ChanLine line, ReadLine(&words, options));
     LF_RETURN_IF_ERROR(CheckFollows(words, line.frame, before));
     before = line.frame;
     const Result<RigidTransform> pose = CamFromWorldOfOpenGl(line.world_from_camera);
     if (!pose) return words.Fault(pose.error().message);
-    (line.fov_deg ? states_fov : lacks_fov) = true;
+    if (!line.fov && !of_lens) of_lens = IntrinsicsOfLens(options, resolution_px, &path);
     ForeignCamera camera;
-    camera.pinhole = {line.fov_deg ? IntrinsicsOfFov(*line.fov_deg, resolution_px)
-                                   : IntrinsicsOfLens(options, resolution_px),
-                      *pose};
+    camera.pinhole = {
+        line.fov ? IntrinsicsOfFov(FovDeg(*line.fov, options, &path), resolution_px) : *of_lens,
+        *pose};
     path.cameras.push_back(std::move(camera));
   }
   LF_RETURN_IF_ERROR(stream.Status());
   if (path.cameras.empty())
     return InputError(fmt::format("{}: has no frames: {}", stream.path().string(), kColumns));
-  if (states_fov && options.focal_length_mm)
+  if (path.largest_fov && options.focal_length_mm)
     return UsageError(
         fmt::format("{{focal_length_mm}} is only for .chan files without a field of view, but {} "
                     "states it: leave the option out",
                     stream.path().string()));
-  if (lacks_fov && !options.focal_length_mm)
-    path.lacks.push_back(
-        fmt::format("no field of view (that of a lens of {} mm is used; set "
-                    "{{focal_length_mm}})",
-                    kDefaultFocalLength_mm));
   return path;
 }
 

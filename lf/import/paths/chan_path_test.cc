@@ -83,11 +83,30 @@ TEST(ChanPath, WithoutAFieldOfViewALensIsUsed) {
   EXPECT_EQ(ParsedChan("1 0 0 0 0 0 0 40", lens).error().kind, ErrorKind::kUsage);
 }
 
+TEST(ChanPath, AFieldOfViewMayBeInRadiansIfThatIsSaid) {
+  const PathOptions options = {.resolution_px = std::array<int, 2>{200, 100},
+                               .fov_unit = FovUnit::kRadians};
+  const Result<ForeignPath> path = ParsedChan("1 0 0 0 0 0 0 0.87", options);
+  ASSERT_TRUE(path);
+  EXPECT_NEAR(path->cameras[0].pinhole.intrinsics.fy_px, 50 / std::tan(0.435), 1e-9);
+  EXPECT_EQ(ParsedChan("1 0 0 0 0 0 0 0.87\n2 0 0 0 0 0 0 1.2")->largest_fov, 1.2);
+  EXPECT_FALSE(ParsedChan("1 0 0 0 0 0 0")->largest_fov);
+  EXPECT_NE(ParsedChan("1 0 0 0 0 0 0 40", options).error().message.find("in radians"),
+            std::string::npos);
+}
+
+TEST(ChanPath, MayBeginWithAByteOrderMark) {
+  EXPECT_EQ(ParsedChan("\xEF\xBB\xBF"
+                       "1 0 0 0 0 0 0 40\n2 0 0 0 0 0 0 40\n")
+                ->cameras.size(),
+            2u);
+}
+
 TEST(ChanPath, ErrorsNameTheLineTheValueAndTheRemedy) {
   ExpectChanError("1 0 0 0 0 0 0 40\n3 0 0 0 0 0 0 40", {":2: ", "is 3, after 1", "expected 2"});
   ExpectChanError("1 0 0 0 0 0\n", {":1: rz is missing", "frame tx ty tz"});
   ExpectChanError("1 0 0 zero 0 0 0", {":1: tz is \"zero\""});
-  ExpectChanError("1 0 0 0 0 0 0 180", {"180 degrees", "below 180"});
+  ExpectChanError("1 0 0 0 0 0 0 180", {"is 180: expected", "in degrees", "below 180"});
   ExpectChanError("1 0 0 0 0 0 0 40 1", {"more than 8 columns"});
   ExpectChanError("1.5 0 0 0 0 0 0 40", {"frame number is 1.5"});
   ExpectChanError("1 1e13 0 0 0 0 0 40", {"tx is 1e+13"});

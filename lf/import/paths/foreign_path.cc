@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -19,6 +20,19 @@ constexpr double kLeastHalfView = 1e-6, kMostHalfView = 1e4;
 
 Error FrameError(const std::filesystem::path& file, size_t index, const std::string& message) {
   return InputError(fmt::format("{}: frame {}: {}", file.string(), index + 1, message));
+}
+
+// Returns kInput if all fields of view may be radians, of which a half circle has kPi.
+Result<void> CheckFovUnit(const ForeignPath& path, const std::filesystem::path& file,
+                          const PathOptions& options) {
+  if (options.fov_unit || !path.largest_fov || *path.largest_fov >= kPi) return {};
+  return InputError(fmt::format(
+      "{}: the field of view is at most {:.4g}: expected degrees, but so few need a very long "
+      "lens, "
+      "and {:.4g} radians are {:.4g} degrees: convert the path, and state the unit of its fields "
+      "of "
+      "view: {{lfpath fov_unit radians}} or {{lfpath fov_unit degrees}}",
+      file.string(), *path.largest_fov, *path.largest_fov, DegreesFromRadians(*path.largest_fov)));
 }
 
 Result<double> UnitOf(const ForeignPath& path, const std::filesystem::path& file,
@@ -188,6 +202,38 @@ Intrinsics IntrinsicsOfFov(double fov_deg, const std::array<int, 2>& resolution_
           resolution_px[1]};
 }
 
+Intrinsics IntrinsicsOfLens(const PathOptions& options, const std::array<int, 2>& resolution_px,
+                            ForeignPath* path) {
+  constexpr double kDefaultFocalLength_mm = 50;
+  if (!options.focal_length_mm)
+    path->lacks.push_back(
+        fmt::format("no field of view (that of a lens of {} mm is used; set {{focal_length_mm}})",
+                    kDefaultFocalLength_mm));
+  Intrinsics k = IntrinsicsOfFov(90, resolution_px);
+  k.fx_px = k.fy_px = resolution_px[0] * options.focal_length_mm.value_or(kDefaultFocalLength_mm) /
+                      options.sensor_width_mm.value_or(kDefaultSensorWidth_mm);
+  return k;
+}
+
+NumberRule FovRule(const PathOptions& options) {
+  constexpr NumberRule kDegrees = {"the vertical field of view in degrees, above 0 and below 180",
+                                   [](double x) { return x > 0 && x < 180; }};
+  constexpr NumberRule kRadians = {"the vertical field of view in radians, above 0 and below pi",
+                                   [](double x) { return x > 0 && x < kPi; }};
+  return options.fov_unit == FovUnit::kRadians ? kRadians : kDegrees;
+}
+
+double FovDeg(double stated, const PathOptions& options, ForeignPath* path) {
+  path->largest_fov = std::max(path->largest_fov.value_or(stated), stated);
+  return options.fov_unit == FovUnit::kRadians ? DegreesFromRadians(stated) : stated;
+}
+
+std::optional<FovUnit> FovUnitOf(std::string_view name) {
+  if (name == "degrees") return FovUnit::kDegrees;
+  if (name == "radians") return FovUnit::kRadians;
+  return std::nullopt;
+}
+
 double VerticalFov_deg(const Intrinsics& k) {
   return DegreesFromRadians(2 * std::atan(k.height_px / (2 * k.fy_px)));
 }
@@ -220,6 +266,7 @@ Result<CameraPath> CompletePath(ForeignPath&& path, const std::filesystem::path&
         "{}: \"lf_views\" is {}, but the file has {} frames: expected the same number of views of "
         "every moment",
         file.string(), path.views, path.cameras.size()));
+  LF_RETURN_IF_ERROR(CheckFovUnit(path, file, options));
   LF_ASSIGN_OR_RETURN(complete.unit_m, UnitOf(path, file, options));
   const Defaults defaults = DefaultsFor(complete.unit_m, options, &path);
   complete.cameras.reserve(path.cameras.size());

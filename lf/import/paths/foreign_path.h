@@ -35,6 +35,9 @@ struct ForeignPath {
   std::vector<ForeignCamera> cameras;
   int views = 1;                          // of each moment (CameraPath::views)
   std::optional<DepthRange> depth_range;  // depths of the scene, if the file states them
+  // The largest number that the file states as a field of view in the unit that is to be found out;
+  // none if it states no field of view, or if another key says the same in a known unit.
+  std::optional<double> largest_fov;
   // Phrases of the warning, such as "no frames per second (30 are used; set {fps})".
   std::vector<std::string> lacks;
 };
@@ -54,6 +57,18 @@ std::array<int, 2> ResolutionOr(const PathOptions& options, ForeignPath* path);
 // fov_deg is the vertical field of view, above 0 and below 180.
 Intrinsics IntrinsicsOfFov(double fov_deg, const std::array<int, 2>& resolution_px);
 
+// Returns the intrinsics of a lens of options.focal_length_mm on the sensor, for files that state
+// no field of view. If the focal length is not given, it is 50 mm, and path->lacks says so.
+Intrinsics IntrinsicsOfLens(const PathOptions& options, const std::array<int, 2>& resolution_px,
+                            ForeignPath* path);
+
+// Returns the rule for a vertical field of view as a file states it, in degrees or, if
+// options.fov_unit says so, in radians.
+NumberRule FovRule(const PathOptions& options);
+
+// Returns a field of view that a file states, in degrees. Notes it in path->largest_fov.
+double FovDeg(double stated, const PathOptions& options, ForeignPath* path);
+
 // Returns the vertical field of view of a plate in degrees, as IntrinsicsOfFov() takes it.
 double VerticalFov_deg(const Intrinsics& k);
 
@@ -66,7 +81,8 @@ void MoveInto(const Similarity& b_from_a, ForeignCamera* camera);
 
 // Completes the cameras. A warning lists the quantities that the file lacks.
 //   file  for messages
-// kInput: path.unit_m contradicts the light field; a quantity of a frame is out of its range; the
+// kInput: path.unit_m contradicts the light field; all fields of view may be radians, and
+// options.fov_unit is not set; a quantity of a frame is out of its range; the
 // number of views of a moment does not divide the number of frames.
 Result<CameraPath> CompletePath(ForeignPath&& path, const std::filesystem::path& file,
                                 const PathOptions& options);

@@ -43,6 +43,8 @@ Result<void> CheckList(const JsonFields& top, const char* key, size_t count) {
 Result<void> ReadJsonList(std::string_view text, const std::filesystem::path& file,
                           const char* list_key, const ReadFields& read_top,
                           const ReadFields& read_entry) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";  // some editors begin a text in UTF-8 with it
+  if (text.starts_with(kMark)) text.remove_prefix(kMark.size());
   // The parts of the text: a list is wrapped into an object.
   const bool is_list = text.find_first_not_of(" \t\r\n") == text.find('[');
   const std::string opening = is_list ? fmt::format("{{\"{}\":", list_key) : "";

@@ -54,7 +54,7 @@ Result<void> ReadExactPose(const JsonFields& frame, RigidTransform* cam_from_wor
 }
 
 Result<void> ReadExactIntrinsics(const JsonFields& frame, Intrinsics* k) {
-  constexpr const char* kKey = "lf_intrinsics";
+  constexpr const char* kKey = kLfIntrinsicsKey;
   LF_ASSIGN_OR_RETURN(const std::optional<std::vector<double>> numbers,
                       frame.Numbers(kKey, 5, 5, kFiniteRule));
   if (!numbers) return {};

@@ -11,9 +11,10 @@
 
 namespace lf {
 
+inline constexpr const char* kLfIntrinsicsKey = "lf_intrinsics";
 // The keys of a frame (doc/formats/foreign_paths.md).
 inline constexpr const char* kLfCameraKeys[] = {
-    "lf_cam_from_world",    "lf_intrinsics",     "lf_sensor_width", "lf_focal_length",
+    "lf_cam_from_world",    kLfIntrinsicsKey,    "lf_sensor_width", "lf_focal_length",
     "lf_aperture_diameter", "lf_focus_distance", "lf_blades",       "lf_blade_rotation_rad",
     "lf_blade_roundness",   "lf_aperture_ratio", "lf_hood",         "lf_focus_tilt_rad"};
 

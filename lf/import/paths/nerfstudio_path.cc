@@ -27,8 +27,6 @@ constexpr double kTransformTolerance = 1e-3;  // of rotations, because files may
 
 constexpr NumberRule kAnyNumber = {"from -1e12 to 1e12",
                                    [](double x) { return std::abs(x) <= 1e12; }};
-constexpr NumberRule kFov = {"the vertical field of view in degrees, above 0 and below 180",
-                             [](double x) { return x > 0 && x < 180; }};
 constexpr NumberRule kSide = {"a whole number of pixels from 1 to 65536", [](double x) {
                                 return x >= 1 && x <= kLargestPlateSide_px && x == std::floor(x);
                               }};
@@ -42,24 +40,15 @@ constexpr NumberRule kScale = {"a factor from 1e-9 to 1e9",
                                [](double x) { return x >= 1e-9 && x <= 1e9; }};
 
 Result<ForeignCamera> CameraOfFrame(const JsonFields& frame,
-                                    const std::array<int, 2>& resolution_px) {
-  constexpr const char* kPose = "camera_to_world";
+                                    const std::array<int, 2>& resolution_px,
+                                    const PathOptions& options, ForeignPath* path) {
   LF_RETURN_IF_ERROR(frame.CheckLfKeys(kLfCameraKeys, kTopKeys, "to the top level"));
-  LF_ASSIGN_OR_RETURN(const std::optional<std::vector<double>> numbers,
-                      frame.Numbers(kPose, 16, 16, kAnyNumber));
-  if (!numbers) return frame.Wrong(kPose, "16 numbers, the rows of the 4x4 camera-to-world matrix");
-  const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> matrix(numbers->data());
-  if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
-    return frame.Fault(
-        fmt::format("\"{}\" has the last row {}, {}, {}, {}: expected 0, 0, 0, 1; is the matrix "
-                    "column-major?",
-                    kPose, matrix(3, 0), matrix(3, 1), matrix(3, 2), matrix(3, 3)));
-  const Result<RigidTransform> pose = CamFromWorldOfOpenGl(matrix.topRows<3>());
-  if (!pose) return frame.Fault(fmt::format("\"{}\" {}", kPose, pose.error().message));
-  LF_ASSIGN_OR_RETURN(const std::optional<double> fov_deg, frame.Number("fov", kFov));
-  if (!fov_deg) return frame.Wrong("fov", kFov.expected);
+  LF_ASSIGN_OR_RETURN(const RigidTransform pose, PoseOfMatrix(frame, "camera_to_world"));
+  const NumberRule rule = FovRule(options);
+  LF_ASSIGN_OR_RETURN(const std::optional<double> fov, frame.Number("fov", rule));
+  if (!fov) return frame.Wrong("fov", rule.expected);
   ForeignCamera camera;
-  camera.pinhole = {IntrinsicsOfFov(*fov_deg, resolution_px), *pose};
+  camera.pinhole = {IntrinsicsOfFov(FovDeg(*fov, options, path), resolution_px), pose};
   LF_RETURN_IF_ERROR(ReadLfCameraKeys(frame, &camera));
   return camera;
 }
@@ -131,6 +120,33 @@ Similarity Composed(const Similarity& c_from_b, const Similarity& b_from_a) {
           c_from_b.scale * (c_from_b.rotation * b_from_a.translation) + c_from_b.translation};
 }
 
+}  // namespace
+
+Result<RigidTransform> PoseOfMatrix(const JsonFields& frame, const char* key) {
+  const size_t size = frame.ListSize(key).value_or(16);
+  const bool has_rows = size == 3 || size == 4;
+  const size_t count = size == 12 ? 12 : 16;
+  LF_ASSIGN_OR_RETURN(const std::optional<std::vector<double>> numbers,
+                      has_rows ? frame.Matrix(key, 3, 4, 4, kAnyNumber)
+                               : frame.Numbers(key, count, count, kAnyNumber));
+  if (!numbers)
+    return frame.Wrong(key,
+                       "16 numbers, the rows of the 4x4 camera-to-world matrix, or a list of its "
+                       "rows");
+  if (numbers->size() == 16) {
+    const Eigen::RowVector4d last(numbers->data() + 12);
+    if (last != Eigen::RowVector4d(0, 0, 0, 1))
+      return frame.Fault(
+          fmt::format("\"{}\" has the last row {}, {}, {}, {}: expected 0, 0, 0, 1; is the matrix "
+                      "column-major?",
+                      key, last[0], last[1], last[2], last[3]));
+  }
+  const Result<RigidTransform> pose =
+      CamFromWorldOfOpenGl(Eigen::Matrix<double, 3, 4, Eigen::RowMajor>(numbers->data()));
+  if (!pose) return frame.Fault(fmt::format("\"{}\" {}", key, pose.error().message));
+  return pose;
+}
+
 Result<void> UndoTraining(const fs::path& file, const PathOptions& options, bool is_world,
                           ForeignPath* path) {
   std::error_code error;
@@ -159,8 +175,6 @@ Result<void> UndoTraining(const fs::path& file, const PathOptions& options, bool
   return {};
 }
 
-}  // namespace
-
 Result<ForeignPath> ParseNerfstudioPath(std::string_view text, const fs::path& file,
                                         const PathOptions& options, bool* is_world) {
   ForeignPath path;
@@ -175,12 +189,16 @@ Result<ForeignPath> ParseNerfstudioPath(std::string_view text, const fs::path& f
     LF_ASSIGN_OR_RETURN(*is_world, IsWorld(top));
     return {};
   };
+  bool states_intrinsics = false;
   const auto read_frame = [&](const JsonFields& frame) -> Result<void> {
-    LF_ASSIGN_OR_RETURN(const ForeignCamera camera, CameraOfFrame(frame, resolution_px));
+    LF_ASSIGN_OR_RETURN(const ForeignCamera camera,
+                        CameraOfFrame(frame, resolution_px, options, &path));
+    states_intrinsics = states_intrinsics || frame.Has(kLfIntrinsicsKey);
     path.cameras.push_back(camera);
     return {};
   };
   LF_RETURN_IF_ERROR(ReadJsonList(text, file, kListKey, read_top, read_frame));
+  if (states_intrinsics) path.largest_fov = std::nullopt;
   return path;
 }
 

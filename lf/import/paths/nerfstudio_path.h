@@ -5,8 +5,8 @@
 //   {"camera_type": "perspective", "render_width": 1920, "render_height": 1080, "fps": 24,
 //    "seconds": 4, "camera_path": [{"camera_to_world": [16 numbers], "fov": 50}, ...]}
 //
-// camera_to_world is row-major, with OpenGL's camera axes; fov is the vertical field of view in
-// degrees. Internal to this folder.
+// camera_to_world is row-major, with OpenGL's camera axes, as one list or as a list of rows; fov is
+// the vertical field of view in degrees. Internal to this folder.
 #pragma once
 
 #include <filesystem>
@@ -29,6 +29,19 @@ Result<ForeignPath> ParseNerfstudioPath(std::string_view text, const std::filesy
 // or by a dataparser_transforms.json beside the file.
 Result<ForeignPath> ReadNerfstudioPath(const std::filesystem::path& file,
                                        const PathOptions& options);
+
+// Returns the pose that a matrix from camera to world states, 4x4 or 3x4: all numbers row by row,
+// or a list of rows. kInput: the key is missing, or has no such matrix.
+Result<RigidTransform> PoseOfMatrix(const JsonFields& frame, const char* key);
+
+// Moves the cameras of a file from the space in which nerfstudio trained to the world of the light
+// field, by options.dataparser_transforms or by a dataparser_transforms.json beside the file. If
+// there is none, path->lacks says so.
+//   is_world  the file says that its cameras are in the world; they are not moved
+// kUsage: is_world is true, and options.dataparser_transforms is given. kInput: errors of
+// WorldFromTrained().
+Result<void> UndoTraining(const std::filesystem::path& file, const PathOptions& options,
+                          bool is_world, ForeignPath* path);
 
 // Returns the similarity that a dataparser_transforms.json states: nerfstudio moves a point x of
 // the world of the original poses to scale (R x + t) in the trained space.

@@ -40,6 +40,38 @@ TEST(NerfstudioPath, CamerasAreConvertedFromOpenGlAndVerticalAngles) {
   EXPECT_FALSE(path->cameras[0].aperture_diameter_w);
 }
 
+TEST(NerfstudioPath, MatricesMayBeListsOfRowsAndLackTheLast) {
+  const std::string flat = "[1, 0, 0, 1, 0, 0, -1, 2, 0, 1, 0, 3, 0, 0, 0, 1]";
+  for (const char* matrix :
+       {"[[1, 0, 0, 1], [0, 0, -1, 2], [0, 1, 0, 3], [0, 0, 0, 1]]",
+        "[[1, 0, 0, 1], [0, 0, -1, 2], [0, 1, 0, 3]]", "[1, 0, 0, 1, 0, 0, -1, 2, 0, 1, 0, 3]"}) {
+    const Result<ForeignPath> path = ParsedNerfstudio(With(kNerfstudioText, flat, matrix));
+    ASSERT_TRUE(path) << path.error().message;
+    EXPECT_EQ(path->cameras[0].pinhole.CentreWorld(), Vec3(1, 2, 3));
+    EXPECT_EQ(path->cameras[0].pinhole.ForwardWorld(), Vec3(0, 1, 0));
+  }
+  ExpectNerfstudioError(flat, "[[1, 0, 0, 1], [0, 0, -1, 2], [0, 1, 0, 3], [1, 2, 3, 1]]",
+                        {"last row 1, 2, 3, 1"});
+  ExpectNerfstudioError(flat, "[[1, 0, 0], [0, 0, -1], [0, 1, 0]]",
+                        {"camera_path[0]: \"camera_to_world\"", "4 numbers"});
+}
+
+TEST(NerfstudioPath, AFieldOfViewThatMayBeInRadiansIsNoted) {
+  const std::string text = With(kNerfstudioText, "90", "0.87");
+  EXPECT_EQ(ParsedNerfstudio(text)->largest_fov, 0.87);
+  const Result<ForeignPath> radians = ParsedNerfstudio(text, {.fov_unit = FovUnit::kRadians});
+  ASSERT_TRUE(radians);
+  EXPECT_NEAR(radians->cameras[0].pinhole.intrinsics.fy_px, 50 / std::tan(0.435), 1e-9);
+  ExpectPathError(ParsedNerfstudio(kNerfstudioText, {.fov_unit = FovUnit::kRadians}), "n.json",
+                  {"\"fov\" is 90", "in radians"});
+  // Our own keys agree with degrees only.
+  const double fy_px = 50 / std::tan(RadiansFromDegrees(0.435));
+  const std::string exact = With(
+      text, "\"aspect\": 2", "\"lf_intrinsics\": [60, " + std::to_string(fy_px) + ", 100, 50, 0]");
+  ASSERT_TRUE(ParsedNerfstudio(exact)) << ParsedNerfstudio(exact).error().message;
+  EXPECT_FALSE(ParsedNerfstudio(exact)->largest_fov);
+}
+
 TEST(NerfstudioPath, WithoutFpsTheDurationTellsThem) {
   const Result<ForeignPath> path = ParsedNerfstudio(With(kNerfstudioText, "\"fps\": 10, ", ""));
   ASSERT_TRUE(path);
@@ -217,6 +249,26 @@ TEST_F(NerfstudioFileTest, MissingQuantitiesAreCompletedOrReplaced) {
   EXPECT_EQ(OpenPath(folder_ / "camera_path.json", {.f_number = 2, .aperture_diameter_mm = 3})
                 .error()
                 .kind,
+            ErrorKind::kUsage);
+}
+
+TEST_F(NerfstudioFileTest, RadiansAreAskedFor) {
+  Write("camera_path.json", With(kNerfstudioText, "90", "0.87"));
+  ExpectPathError(
+      OpenPath(folder_ / "camera_path.json", {}), (folder_ / "camera_path.json").string(),
+      {"is at most 0.87", "0.87 radians are 49.85 degrees", "{lfpath fov_unit radians}"});
+  const double focal_px = 50 / std::tan(0.435);
+  EXPECT_NEAR(Camera({.fov_unit = FovUnit::kRadians}).pinhole.intrinsics.fy_px, focal_px, 1e-9);
+  EXPECT_NEAR(Camera({.fov_unit = FovUnit::kDegrees}).pinhole.intrinsics.fy_px,
+              50 / std::tan(RadiansFromDegrees(0.435)), 1e-6);
+  // A zoom from 0.87 to 30 is in degrees.
+  Write("camera_path.json",
+        With(With(kNerfstudioText, "90", "0.87"), "\"aspect\": 2}",
+             "\"aspect\": 2}, {\"camera_to_world\": [1, 0, 0, 1, 0, 0, -1, 2, 0, 1, 0, 3, 0, 0, 0, "
+             "1], \"fov\": 30}"));
+  EXPECT_NEAR(Camera().pinhole.intrinsics.fy_px, 50 / std::tan(RadiansFromDegrees(0.435)), 1e-6);
+  Write("camera_path.json", "format: lfpath 1\n");
+  EXPECT_EQ(OpenPath(folder_ / "camera_path.json", {.fov_unit = FovUnit::kDegrees}).error().kind,
             ErrorKind::kUsage);
 }
 

@@ -27,8 +27,6 @@ constexpr const char* kNgpTopKeys[] = {"lf_unit_m", "lf_fps",    "lf_resolution"
 constexpr double kDefaultDuration_s = 1;
 
 constexpr NumberRule kNgpNumber = {"from -1e6 to 1e6", [](double x) { return std::abs(x) <= 1e6; }};
-constexpr NumberRule kNgpFov = {"the vertical field of view in degrees, above 0 and below 180",
-                                [](double x) { return x > 0 && x < 180; }};
 constexpr NumberRule kNgpRadius = {"the radius of the lens, from 0 to 1e6",
                                    [](double x) { return x >= 0 && x <= 1e6; }};
 constexpr NumberRule kNgpOrder = {"0, 1, 2 or 3",
@@ -114,8 +112,10 @@ Result<void> ReadHead(const JsonFields& top, const PathOptions& options, NgpHead
   return {};
 }
 
-// Reads the numbers of a keyframe. Older files call aperture_size "dof".
-Result<NgpNumbers> NumbersOfKey(const JsonFields& key) {
+// Reads the numbers of a keyframe, with the field of view in degrees. Older files call
+// aperture_size "dof".
+Result<NgpNumbers> NumbersOfKey(const JsonFields& key, const PathOptions& options,
+                                ForeignPath* path) {
   NgpNumbers numbers;
   LF_ASSIGN_OR_RETURN(const std::optional<std::vector<double>> rotation,
                       key.Numbers("R", 4, 4, kNgpNumber));
@@ -129,14 +129,17 @@ Result<NgpNumbers> NumbersOfKey(const JsonFields& key) {
   if (!position) return key.Wrong("T", "the position [x, y, z]");
   numbers.segment<3>(4) = Vec3(position->data());
   const char* const aperture = key.Has("dof") ? "dof" : "aperture_size";
-  const std::pair<const char*, NumberRule> rest[] = {
-      {"slice", kNgpNumber}, {"scale", kNgpNumber}, {"fov", kNgpFov}, {aperture, kNgpRadius}};
+  const std::pair<const char*, NumberRule> rest[] = {{"slice", kNgpNumber},
+                                                     {"scale", kNgpNumber},
+                                                     {"fov", FovRule(options)},
+                                                     {aperture, kNgpRadius}};
   int index = 7;
   for (const auto& [name, rule] : rest) {
     LF_ASSIGN_OR_RETURN(const std::optional<double> number, key.Number(name, rule));
     if (!number) return key.Wrong(name, rule.expected);
     numbers[index++] = *number;
   }
+  numbers[9] = FovDeg(numbers[9], options, path);
   return numbers;
 }
 
@@ -211,10 +214,11 @@ Result<ForeignPath> ParseNgpPath(std::string_view text, const fs::path& file,
   ForeignPath path;
   NgpHead head;
   head.space = space;
+  bool states_intrinsics = false;
   const auto read_top = [&](const JsonFields& top) { return ReadHead(top, options, &head, &path); };
   const auto read_key = [&](const JsonFields& key) -> Result<void> {
     LF_RETURN_IF_ERROR(key.CheckLfKeys(kLfCameraKeys, kNgpTopKeys, "to the top level"));
-    LF_ASSIGN_OR_RETURN(const NgpNumbers numbers, NumbersOfKey(key));
+    LF_ASSIGN_OR_RETURN(const NgpNumbers numbers, NumbersOfKey(key, options, &path));
     LF_ASSIGN_OR_RETURN(const std::optional<double> timestamp, key.Number("timestamp", kNgpTime));
     head.curve.keys.push_back(numbers);
     head.curve.timestamps.push_back(timestamp.value_or(0));
@@ -222,10 +226,12 @@ Result<ForeignPath> ParseNgpPath(std::string_view text, const fs::path& file,
     ForeignCamera camera = CameraOfNumbers(numbers, head.resolution_px);
     MoveInto(InverseOf(NgpFromWorld(head.space)), &camera);
     LF_RETURN_IF_ERROR(ReadLfCameraKeys(key, &camera));
+    states_intrinsics = states_intrinsics || key.Has(kLfIntrinsicsKey);
     path.cameras.push_back(camera);
     return {};
   };
   LF_RETURN_IF_ERROR(ReadJsonList(text, file, kKeysKey, read_top, read_key));
+  if (states_intrinsics) path.largest_fov = std::nullopt;
   if (head.frame_count) return path;
   RepairTimestamps(&head.curve);
   LF_RETURN_IF_ERROR(Film(head, file, options, &path));

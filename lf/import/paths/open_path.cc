@@ -14,6 +14,7 @@
 #include "lf/import/paths/frames_path.h"
 #include "lf/import/paths/map_place.h"
 #include "lf/import/paths/nerfstudio_path.h"
+#include "lf/import/paths/nerfstudio_poses.h"
 #include "lf/import/paths/ngp_path.h"
 #include "lf/import/paths/path_kind.h"
 #include "lf/import/paths/transmission_file.h"
@@ -26,6 +27,8 @@ Result<ForeignPath> ReadForeign(const PathPlace& place, const PathOptions& optio
   switch (place.kind) {
     case PathKind::kNerfstudio:
       return ReadNerfstudioPath(place.path, options);
+    case PathKind::kNerfstudioPoses:
+      return ReadNerfstudioPoses(place.path, options);
     case PathKind::kNgp:
       return ReadNgpPath(place.path, options);
     case PathKind::kTransforms:
@@ -43,15 +46,22 @@ Result<ForeignPath> ReadForeign(const PathPlace& place, const PathOptions& optio
 
 // Refuses options that would have no effect.
 Result<void> CheckOptions(PathKind kind, const fs::path& path, const PathOptions& options) {
-  if (!options.dataparser_transforms.empty() && kind != PathKind::kNerfstudio)
+  const bool is_nerfstudio = kind == PathKind::kNerfstudio || kind == PathKind::kNerfstudioPoses;
+  if (!options.dataparser_transforms.empty() && !is_nerfstudio)
     return UsageError(fmt::format(
         "{{dataparser_transforms}} is only for camera paths of nerfstudio, but {} is of "
         "another kind: leave the option out",
         path.string()));
-  if (options.focal_length_mm && kind != PathKind::kChan)
+  if (options.focal_length_mm && kind != PathKind::kChan && kind != PathKind::kNerfstudioPoses)
     return UsageError(
         fmt::format("{{focal_length_mm}} is only for .chan files without a field of view, but {} "
                     "states it: leave the option out",
+                    path.string()));
+  if (options.fov_unit && kind != PathKind::kNerfstudio && kind != PathKind::kNgp &&
+      kind != PathKind::kChan)
+    return UsageError(
+        fmt::format("{{fov_unit}} is only for camera paths of nerfstudio and instant-ngp and for "
+                    ".chan files, but {} is of another kind: leave the option out",
                     path.string()));
   return {};
 }

@@ -36,10 +36,12 @@ std::vector<std::filesystem::path> FilesOfPath(const std::filesystem::path& path
 // Returns the cameras of a path, one for each frame. The form of the file is found by its content:
 // - our own YAML: camera/path/path_yaml.h
 // - JSON with the key "camera_path": import/paths/nerfstudio_path.h
+// - a list of poses by `ns-export cameras` of nerfstudio: import/paths/nerfstudio_poses.h
 // - JSON with the key "path": import/paths/ngp_path.h
 // - lines of numbers, a .chan of Nuke: import/paths/chan_path.h
 // - a transforms.json, the folder of one or of a COLMAP model, or a cameras.json of 3D Gaussian
-//   splatting, whose cameras become the frames: import/paths/frames_path.h
+//   splatting, whose cameras become the frames: import/paths/frames_path.h. A file of a COLMAP
+//   model, such as images.txt, stands for its folder
 // doc/formats/foreign_paths.md lists the conventions. A warning lists each quantity that the file
 // does not state, and the value that is used.
 //

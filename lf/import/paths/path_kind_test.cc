@@ -38,8 +38,22 @@ TEST(PathKind, TheContentTellsTheForm) {
 }
 
 TEST(PathKind, FilesOfOurOwnAndUsdAreRefusedByName) {
-  ExpectPathError(PathKindOf("SQLite format 3", "p"), "p", {"packed store", "no camera path"});
+  ExpectPathError(PathKindOf("SQLite format 3", "p"), "p",
+                  {"packed store", "not read as a camera path"});
   ExpectPathError(PathKindOf("#usda 1.0\n(", "p"), "p", {"USD", "not read", "camera path"});
+}
+
+TEST(PathKind, TextInUtf16IsRefusedUnlessItIsOurOwn) {
+  const auto utf16 = [](std::string_view text, bool is_big) {
+    std::string wide = is_big ? "\xFE\xFF" : "\xFF\xFE";
+    for (const char c : text) wide += is_big ? std::string{'\0', c} : std::string{c, '\0'};
+    return wide;
+  };
+  for (const bool is_big : {false, true}) {
+    for (const std::string& text : {kNerfstudioText, std::string("1 0 0 0 0 0 0\n")})
+      ExpectPathError(PathKindOf(utf16(text, is_big), "p"), "p", {"UTF-16", "save it as UTF-8"});
+    EXPECT_EQ(*PathKindOf(utf16("format: lfpath 1\n", is_big), "p"), PathKind::kYaml);
+  }
 }
 
 TEST(PathKind, OtherJsonIsRefusedWithTheKeysFound) {

@@ -19,6 +19,12 @@ enum class RotationOrder { kXyz, kXzy, kYxz, kYzx, kZxy, kZyx };
 // Returns the order of a name such as "zxy"; nullopt if the name is unknown.
 std::optional<RotationOrder> RotationOrderOf(std::string_view name);
 
+// Unit of the vertical field of view that a file states.
+enum class FovUnit { kDegrees, kRadians };
+
+// Returns the unit of a name, "degrees" or "radians"; nullopt if the name is unknown.
+std::optional<FovUnit> FovUnitOf(std::string_view name);
+
 // Values for which the file of the path has no place, or that replace those of the file.
 struct PathOptions {
   // The three members below describe the light field that the path is for. OpenFilm() and
@@ -53,6 +59,9 @@ struct PathOptions {
   std::optional<uint32_t> frame_count = {};
   std::optional<double> focal_length_mm = {};  // gives the field of view; 50 by default
   RotationOrder rotation_order = RotationOrder::kZxy;
+  // For paths of nerfstudio, instant-ngp and Nuke, whose fields of view are in degrees. If it is
+  // not set, a file with fields of view that may be radians as well is refused.
+  std::optional<FovUnit> fov_unit = {};
   // The dataparser_transforms.json of nerfstudio; by default the one beside the path.
   std::filesystem::path dataparser_transforms = {};
   // Scale and offset of instant-ngp's space; by default those of the light field's transforms.json,

@@ -145,6 +145,7 @@ Result<bool> IsCameraPath(const fs::path& file) {
       return text.find("lfpath") != std::string_view::npos;
     case PathKind::kChan:
       return ReadChan(file, {}).has_value();
+    case PathKind::kNerfstudioPoses:
     case PathKind::kTransforms:
     case PathKind::kSplatCameras:
     case PathKind::kColmap:

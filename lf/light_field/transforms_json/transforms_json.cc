@@ -81,6 +81,12 @@ class Reader {
     if (first_error) return *first_error;
     JsonObject top;
     const JsonFields fields(top, path_);
+    if (top_text.starts_with('['))
+      return fields.Fault(
+          "the file holds a list, such as the poses that `ns-export cameras` of nerfstudio writes, "
+          "which has no intrinsics: expected {...} with a list \"frames\"; give the "
+          "transforms.json "
+          "that nerfstudio trained on");
     if (!top.Parse(top_text))
       return fields.Fault("the file holds no object: expected {...} with a list \"frames\"");
     if (error_) return *error_;
