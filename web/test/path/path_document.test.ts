@@ -44,7 +44,7 @@ test("keyframes, speeds and accelerations are told as they are listed", () => {
     focus.keyframes.map((key) => key.time),
     [0.5, 1.5, 2, 3],
   );
-  assert.equal(focus.keyframes[1].interpolation, "smooth");
+  assert.equal(focus.keyframes[1].interpolation, "ease");
   assert.equal(focus.base, 0.55);
   assert.equal(focus.baseIsKey, true);
   assert.equal(PathDocument.parse(example("tilt")).quantity("aperture_diameter").baseIsKey, true);
@@ -151,10 +151,7 @@ test("keys join lists as these are written, and comments stay with their keys", 
   const smooth = example("focus-pull").replaceAll(", interpolation: ease", "");
   const pull = PathDocument.parse(smooth);
   pull.setKeyframe("focus_distance", 1, 0.4);
-  assert.equal(
-    pull.text(),
-    smooth.replace("value: 0.3}, {time: 2", "value: 0.3}, {time: 1, value: 0.4}, {time: 2"),
-  );
+  assert.equal(pull.text(), smooth.replace("value: 0.3}, {time: 2", "value: 0.3}, {time: 1, value: 0.4}, {time: 2"));
   pull.setKeyframe("focus_distance", 3, 0.4);
   assert.ok(
     pull
