@@ -284,6 +284,31 @@ class ForeignPathsTest(ProgramTestCase):
             self.assertAlmostEqual(key["aperture_size"] / 0.33 * 2000, fact["aperture_diameter_mm"], delta=1e-9)
             self.assertAlmostEqual(key["fov"], fact["field_of_view_deg"][1], delta=1e-9)
 
+    def test_frames_keep_their_numbers(self):
+        """A shot has the frames 1001 to 1048 in every program."""
+        file = self.folder / "shot.chan"
+        file.write_text("".join(f"{frame} {frame / 100} 2 3 0 0 0 40\n" for frame in range(1001, 1049)))
+        for form, name in (("chan", "out.chan"), ("yaml", "out.yaml"), ("nerfstudio", "a.json"),
+                           ("instant-ngp", "b.json")):
+            self.succeeds(PATH, file, "-o", self.folder / name, "--format", form)
+            told = self.facts(self.folder / name)
+            self.assertEqual([camera["frame"] for camera in told["cameras"]], list(range(1001, 1049)), form)
+            self.assertEqual(told["cameras"][0]["time_s"], 0)
+        numbers = np.loadtxt(self.folder / "out.chan")[:, 0]
+        self.assertEqual(numbers.tolist(), list(range(1001, 1049)))
+        self.succeeds(PATH, file, "-o", self.folder / "out.usda")
+        usda = (self.folder / "out.usda").read_text()
+        self.assertIn("startTimeCode = 1001\n    endTimeCode = 1048\n", usda)
+        samples = re.search(r"xformOp:transform.timeSamples = {\n(.*?)\n    }", usda, re.S)[1]
+        self.assertEqual([int(line.split(":")[0]) for line in samples.splitlines()], list(range(1001, 1049)))
+        # Other numbers are given by an option.
+        self.succeeds(PATH, file, "-o", self.folder / "one.chan", "--first-frame", 1)
+        self.assertEqual(np.loadtxt(self.folder / "one.chan")[:, 0].tolist(), list(range(1, 49)))
+        file.write_text("-1 0 0 0 0 0 0 40\n0 0 0 0 0 0 0 40\n")
+        told = self.call(INFO, file, "--json")
+        self.assertIn("frames are numbered from 1; set --first-frame", told.stderr)
+        self.assertEqual([camera["frame"] for camera in json.loads(told.stdout)["cameras"]], [1, 2])
+
     def test_chan_in_any_order_of_rotations(self):
         def about(axis, degrees):
             c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))

@@ -78,7 +78,7 @@ Result<ForeignPath> ParseChan(ByteStream stream, const PathOptions& options) {
   path.fps = FpsOr(options, &path);
   const std::array<int, 2> resolution_px = ResolutionOr(options, &path);
   TextWords words(&stream);
-  std::optional<double> before;
+  std::optional<double> before;       // number of the frame of the line before
   std::optional<Intrinsics> of_lens;  // of lines without a field of view
   while (words.NextEntry()) {
     if (path.cameras.size() == kMostFrames)
@@ -98,6 +98,14 @@ Result<ForeignPath> ParseChan(ByteStream stream, const PathOptions& options) {
   LF_RETURN_IF_ERROR(stream.Status());
   if (path.cameras.empty())
     return InputError(fmt::format("{}: has no frames: {}", stream.path().string(), kColumns));
+  const double first = *before + 1 - static_cast<double>(path.cameras.size());
+  if (first >= 0 && *before <= kLargestFrameNumber)
+    path.first_frame = static_cast<uint32_t>(first);
+  else
+    path.lacks.push_back(
+        fmt::format("no frame numbers from 0 to {} (the first is {}; frames are numbered from 1; "
+                    "set {{first_frame}})",
+                    kLargestFrameNumber, first));
   if (path.largest_fov && options.focal_length_mm)
     return UsageError(
         fmt::format("{{focal_length_mm}} is only for .chan files without a field of view, but {} "
@@ -121,8 +129,8 @@ std::string ChanText(const CameraPath& path, RotationOrder order) {
     // The sum with 0 makes 0 of -0.
     const Vec3 position = pose.col(3) + Vec3::Zero();
     const Vec3 angles_deg = angles_rad * DegreesFromRadians(1) + Vec3::Zero();
-    text += fmt::format("{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\n", i + 1, position.x(), position.y(),
-                        position.z(), angles_deg.x(), angles_deg.y(), angles_deg.z(),
+    text += fmt::format("{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\n", path.frames().At(i).value, position.x(),
+                        position.y(), position.z(), angles_deg.x(), angles_deg.y(), angles_deg.z(),
                         VerticalFov_deg(camera.intrinsics));
   }
   return text;

@@ -3,7 +3,8 @@
 //
 //   frame  tx ty tz  rx ry rz  [vertical field of view]
 //
-// with camera-to-world translations and rotations in degrees of a camera with OpenGL's axes.
+// whose frame numbers are those of the path (CameraPath::first_frame), with camera-to-world
+// translations and rotations in degrees of a camera with OpenGL's axes.
 // Internal to this folder.
 #pragma once
 

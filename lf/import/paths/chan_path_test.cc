@@ -95,6 +95,20 @@ TEST(ChanPath, AFieldOfViewMayBeInRadiansIfThatIsSaid) {
             std::string::npos);
 }
 
+TEST(ChanPath, FramesKeepTheirNumbers) {
+  EXPECT_EQ(ParsedChan("1001 0 0 0 0 0 0 40\n1002 0 0 0 0 0 0 40\n")->first_frame, 1001u);
+  EXPECT_EQ(ParsedChan("0 0 0 0 0 0 0 40\n")->first_frame, 0u);
+  // Files of frames have no negative numbers, and eight digits at most.
+  for (const char* text : {"-2 0 0 0 0 0 0 40\n-1 0 0 0 0 0 0 40\n",
+                           "99999999 0 0 0 0 0 0 40\n100000000 "
+                           "0 0 0 0 0 0 40\n"}) {
+    const Result<ForeignPath> path = ParsedChan(text);
+    ASSERT_TRUE(path) << path.error().message;
+    EXPECT_EQ(path->first_frame, 1u);
+    EXPECT_NE(path->lacks.back().find("no frame numbers from 0"), std::string::npos);
+  }
+}
+
 TEST(ChanPath, MayBeginWithAByteOrderMark) {
   EXPECT_EQ(ParsedChan("\xEF\xBB\xBF"
                        "1 0 0 0 0 0 0 40\n2 0 0 0 0 0 0 40\n")

@@ -18,8 +18,8 @@ namespace {
 constexpr double kLargestLength_w = 1e9;
 constexpr double kLeastHalfView = 1e-6, kMostHalfView = 1e4;
 
-Error FrameError(const std::filesystem::path& file, size_t index, const std::string& message) {
-  return InputError(fmt::format("{}: frame {}: {}", file.string(), index + 1, message));
+Error FrameError(const std::filesystem::path& file, FrameId frame, const std::string& message) {
+  return InputError(fmt::format("{}: frame {}: {}", file.string(), frame.value, message));
 }
 
 // Returns kInput if all fields of view may be radians, of which a half circle has kPi.
@@ -246,6 +246,14 @@ Result<int> ViewsOfKey(const JsonFields& top) {
   return static_cast<int>(views.value_or(1));
 }
 
+Result<uint32_t> FirstFrameOfKey(const JsonFields& top) {
+  constexpr NumberRule kFirst = {
+      "the number of the first frame, a whole number from 0 to 99999999",
+      [](double x) { return x >= 0 && x <= kLargestFrameNumber && x == std::floor(x); }};
+  LF_ASSIGN_OR_RETURN(const std::optional<double> first, top.Number("lf_first_frame", kFirst));
+  return static_cast<uint32_t>(first.value_or(1));
+}
+
 void MoveInto(const Similarity& b_from_a, ForeignCamera* camera) {
   camera->pinhole.cam_from_world = PoseIn(b_from_a, camera->pinhole.cam_from_world);
   for (std::optional<double>* length : {&camera->sensor_width_w, &camera->focal_length_w,
@@ -266,6 +274,13 @@ Result<CameraPath> CompletePath(ForeignPath&& path, const std::filesystem::path&
         "{}: \"lf_views\" is {}, but the file has {} frames: expected the same number of views of "
         "every moment",
         file.string(), path.views, path.cameras.size()));
+  complete.first_frame = path.first_frame;
+  if (path.first_frame + path.cameras.size() - 1 > kLargestFrameNumber)
+    return InputError(
+        fmt::format("{}: \"lf_first_frame\" is {}, so that the last of {} frames has a number "
+                    "above {}: state a "
+                    "smaller one",
+                    file.string(), path.first_frame, path.cameras.size(), kLargestFrameNumber));
   LF_RETURN_IF_ERROR(CheckFovUnit(path, file, options));
   LF_ASSIGN_OR_RETURN(complete.unit_m, UnitOf(path, file, options));
   const Defaults defaults = DefaultsFor(complete.unit_m, options, &path);
@@ -275,7 +290,7 @@ Result<CameraPath> CompletePath(ForeignPath&& path, const std::filesystem::path&
     camera.time_s = static_cast<double>(i) / path.fps;
     camera.unit_m = complete.unit_m;
     if (const std::string fault = FaultOf(camera); !fault.empty())
-      return FrameError(file, i, fault);
+      return FrameError(file, {path.first_frame + static_cast<uint32_t>(i)}, fault);
     complete.cameras.push_back(camera);
   }
   TellWhatIsLacking(path.lacks, file);
@@ -290,7 +305,7 @@ Result<void> ReplaceQuantities(const PathOptions& options, const std::filesystem
   const auto replace = [&](size_t index, RenderCamera* camera) -> Result<void> {
     Replace(options, camera);
     const std::string fault = FaultOf(*camera);
-    return fault.empty() ? Result<void>() : FrameError(file, index, fault);
+    return fault.empty() ? Result<void>() : FrameError(file, path->frames().At(index), fault);
   };
   for (size_t i = 0; i < path->cameras.size(); ++i)
     LF_RETURN_IF_ERROR(replace(i, &path->cameras[i]));

@@ -34,6 +34,7 @@ struct ForeignPath {
   std::optional<double> unit_m;  // metres per world unit
   std::vector<ForeignCamera> cameras;
   int views = 1;                          // of each moment (CameraPath::views)
+  uint32_t first_frame = 1;               // CameraPath::first_frame
   std::optional<DepthRange> depth_range;  // depths of the scene, if the file states them
   // The largest number that the file states as a field of view in the unit that is to be found out;
   // none if it states no field of view, or if another key says the same in a known unit.
@@ -76,6 +77,10 @@ double VerticalFov_deg(const Intrinsics& k);
 // it is missing. CompletePath() checks that it divides the number of frames.
 Result<int> ViewsOfKey(const JsonFields& top);
 
+// Returns the number of the first frame, which the key lf_first_frame of the top level states; 1 if
+// it is missing. CompletePath() checks the number of the last frame.
+Result<uint32_t> FirstFrameOfKey(const JsonFields& top);
+
 // Moves the camera into world b, its lens included.
 void MoveInto(const Similarity& b_from_a, ForeignCamera* camera);
 
@@ -83,7 +88,8 @@ void MoveInto(const Similarity& b_from_a, ForeignCamera* camera);
 //   file  for messages
 // kInput: path.unit_m contradicts the light field; all fields of view may be radians, and
 // options.fov_unit is not set; a quantity of a frame is out of its range; the
-// number of views of a moment does not divide the number of frames.
+// number of views of a moment does not divide the number of frames; the last frame would have a
+// number above kLargestFrameNumber.
 Result<CameraPath> CompletePath(ForeignPath&& path, const std::filesystem::path& file,
                                 const PathOptions& options);
 

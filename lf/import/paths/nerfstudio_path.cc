@@ -22,7 +22,7 @@ namespace {
 
 constexpr const char* kListKey = "camera_path";
 constexpr const char* kDataparserName = "dataparser_transforms.json";
-constexpr const char* kTopKeys[] = {"lf_space", "lf_unit_m", "lf_views"};
+constexpr const char* kTopKeys[] = {"lf_space", "lf_unit_m", "lf_views", "lf_first_frame"};
 constexpr double kTransformTolerance = 1e-3;  // of rotations, because files may have few digits
 
 constexpr NumberRule kAnyNumber = {"from -1e12 to 1e12",
@@ -186,6 +186,7 @@ Result<ForeignPath> ParseNerfstudioPath(std::string_view text, const fs::path& f
     LF_ASSIGN_OR_RETURN(path.fps, RateOf(top, options, &path));
     LF_ASSIGN_OR_RETURN(path.unit_m, top.Number("lf_unit_m", kMetres));
     LF_ASSIGN_OR_RETURN(path.views, ViewsOfKey(top));
+    LF_ASSIGN_OR_RETURN(path.first_frame, FirstFrameOfKey(top));
     LF_ASSIGN_OR_RETURN(*is_world, IsWorld(top));
     return {};
   };

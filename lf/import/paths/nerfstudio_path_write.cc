@@ -34,6 +34,7 @@ std::string NerfstudioText(const CameraPath& path, std::string_view space) {
       plate.width_px, plate.height_px, path.fps, static_cast<double>(path.frame_count()) / path.fps,
       VerticalFov_deg(plate), space, path.unit_m);
   if (path.views > 1) out.Add("\"lf_views\": {},\n", path.views);
+  if (path.first_frame != 1) out.Add("\"lf_first_frame\": {},\n", path.first_frame);
   out.Add("\"keyframes\": [],\n\"camera_path\": [");
   for (size_t i = 0; i < path.frame_count(); ++i) {
     out.Add("{}\n", i > 0 ? "," : "");

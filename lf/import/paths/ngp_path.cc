@@ -22,7 +22,7 @@ namespace {
 
 constexpr const char* kKeysKey = "path";
 constexpr const char* kNgpTopKeys[] = {"lf_unit_m", "lf_fps",    "lf_resolution", "lf_frames",
-                                       "lf_scale",  "lf_offset", "lf_views"};
+                                       "lf_scale",  "lf_offset", "lf_views",      "lf_first_frame"};
 // Films of files that state no duration last as long as instant-ngp's script makes them.
 constexpr double kDefaultDuration_s = 1;
 
@@ -102,6 +102,7 @@ Result<void> ReadHead(const JsonFields& top, const PathOptions& options, NgpHead
   constexpr NumberRule kUnit = {"metres per world unit, from 1e-9 to 1e9",
                                 [](double x) { return x >= 1e-9 && x <= 1e9; }};
   LF_ASSIGN_OR_RETURN(path->unit_m, top.Number("lf_unit_m", kUnit));
+  LF_ASSIGN_OR_RETURN(path->first_frame, FirstFrameOfKey(top));
   LF_RETURN_IF_ERROR(ReadClock(top, options, head, path));
   LF_RETURN_IF_ERROR(ReadResolution(top, options, head, path));
   LF_RETURN_IF_ERROR(ReadSpace(top, "lf_scale", "lf_offset", &head->space));

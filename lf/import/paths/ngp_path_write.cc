@@ -40,6 +40,7 @@ std::string NgpText(const CameraPath& path, const NgpSpace& space) {
       path.unit_m, space.scale);
   out.AddNumbers({space.offset.data(), 3});
   if (path.views > 1) out.Add(",\n\"lf_views\": {}", path.views);
+  if (path.first_frame != 1) out.Add(",\n\"lf_first_frame\": {}", path.first_frame);
   // The last camera is written twice, because instant-ngp films n frames at the shares 0, 1/n, ...,
   // (n - 1)/n of the time between the first and the last keyframe. A timestamp is the end of the
   // segment that begins at its keyframe.

@@ -28,7 +28,7 @@ void AddAttribute(const char* type_and_name, const CameraPath& path,
   }
   *text += fmt::format("    {}.timeSamples = {{\n", type_and_name);
   for (size_t i = 0; i < values.size(); ++i)
-    *text += fmt::format("        {}: {},\n", i + 1, values[i]);
+    *text += fmt::format("        {}: {},\n", path.frames().At(i).value, values[i]);
   *text += "    }\n";
 }
 
@@ -104,12 +104,12 @@ std::string UsdaText(const CameraPath& path) {
     farthest_w = std::max(farthest_w, camera.focus_distance_w);
   }
   std::string text = fmt::format(
-      "{}    startTimeCode = 1\n    endTimeCode = {}\n"
+      "{}    startTimeCode = {}\n    endTimeCode = {}\n"
       "    timeCodesPerSecond = {}\n    framesPerSecond = {}\n    metersPerUnit = {}\n"
       "    upAxis = \"Y\"\n)\n\ndef Camera \"camera\"\n{{\n"
       "    token projection = \"perspective\"\n    float2 clippingRange = ({}, {})\n",
-      kUsdaStart, path.frame_count(), path.fps, path.fps, path.unit_m, nearest_w / 100,
-      farthest_w * 100);
+      kUsdaStart, path.first_frame, path.frames().last(), path.fps, path.fps, path.unit_m,
+      nearest_w / 100, farthest_w * 100);
   AddOptics(path, &text);
   AddAttribute("matrix4d xformOp:transform", path, MatrixText, &text);
   text += "    uniform token[] xformOpOrder = [\"xformOp:transform\"]\n}\n";

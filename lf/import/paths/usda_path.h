@@ -13,8 +13,9 @@ namespace lf {
 // The first lines of every scene that UsdaText() returns.
 inline constexpr std::string_view kUsdaStart = "#usda 1.0\n(\n    defaultPrim = \"camera\"\n";
 
-// Returns the text of a scene with one camera, "/camera", whose time codes are the frames. Lengths
-// of the optics are tenths of a world unit, as USD requires; the focus distance is in world units.
+// Returns the text of a scene with one camera, "/camera", whose time codes are the numbers of the
+// frames. Lengths of the optics are tenths of a world unit, as USD requires; the focus distance is
+// in world units.
 std::string UsdaText(const CameraPath& path);
 
 }  // namespace lf

@@ -72,6 +72,7 @@ std::vector<std::string> LostIn(PathFormat format, const CameraPath& path) {
     lost.push_back(fmt::format(
         "the moments of the film: the {} views of each moment are frames that follow each other{}",
         path.views, note));
+  if (is_json) add(path.first_frame != 1, "the number of the first frame");
   if (path.shutter.exists())
     lost.emplace_back("the shutter, so that a moving camera does not blur its frames");
   if (path.cameras.front().recording_time)

@@ -92,6 +92,36 @@ TEST_F(WritePathTest, JsonKeepsEveryBit) {
   ExpectSameCameras(path, ThereAndBack(path, PathFormat::kNgp, space, &lost));
 }
 
+TEST_F(WritePathTest, NumbersOfFramesAreKept) {
+  CameraPath path = Lively();
+  for (const uint32_t first : {0u, 1001u, kLargestFrameNumber - 8}) {
+    path.first_frame = first;
+    std::vector<std::string> lost;
+    for (const PathFormat format :
+         {PathFormat::kYaml, PathFormat::kNerfstudio, PathFormat::kNgp, PathFormat::kChan}) {
+      const CameraPath read = ThereAndBack(path, format, {}, &lost);
+      EXPECT_EQ(read.first_frame, first);
+      EXPECT_EQ(read.frame_count(), 9u);
+      EXPECT_EQ(read.cameras.front().time_s, 0);
+    }
+  }
+  path.first_frame = 1001;
+  ASSERT_TRUE(WritePath(path, folder_ / "p.chan", PathFormat::kChan, {}));
+  EXPECT_TRUE(ReadFile(folder_ / "p.chan")->starts_with("1001\t"));
+  ASSERT_TRUE(WritePath(path, folder_ / "p.usda", PathFormat::kUsda, {}));
+  const std::string usda = *ReadFile(folder_ / "p.usda");
+  for (const char* part : {"startTimeCode = 1001\n", "endTimeCode = 1009\n", " 1001: ", " 1009: "})
+    EXPECT_NE(usda.find(part), std::string::npos) << part;
+  EXPECT_EQ(usda.find(" 1: "), std::string::npos);
+  // The last number would have nine digits.
+  ASSERT_TRUE(WritePath(path, folder_ / "p.json", PathFormat::kNerfstudio, {}));
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "p.json",
+                                  With(*ReadFile(folder_ / "p.json"), "\"lf_first_frame\": 1001",
+                                       "\"lf_first_frame\": 99999999")));
+  ExpectPathError(OpenPath(folder_ / "p.json", {}), (folder_ / "p.json").string(),
+                  {"\"lf_first_frame\" is 99999999", "9 frames"});
+}
+
 TEST_F(WritePathTest, AnOffCentrePrincipalPointIsKeptAndTold) {
   CameraPath path = Lively();
   path.cameras[2].pinhole.intrinsics.cx_px += 5;
