@@ -7,9 +7,12 @@
 #include <charconv>
 #include <cmath>
 #include <concepts>
+#include <cstdint>
 #include <optional>
 #include <string_view>
 #include <system_error>
+
+#include "lf/core/ids.h"
 
 namespace lf {
 
@@ -33,6 +36,12 @@ std::optional<Whole> ParseWhole(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
+}
+
+// Returns the number if the whole of `text` is one that a frame may have, otherwise nullopt.
+inline std::optional<uint32_t> ParseFrameNumber(std::string_view text) {
+  const std::optional<uint32_t> number = ParseWhole<uint32_t>(text);
+  return number && *number <= kLargestFrameNumber ? number : std::nullopt;
 }
 
 }  // namespace lf

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "lf/core/frame_numbers.h"
 #include "lf/core/ids.h"
 
 namespace lf {

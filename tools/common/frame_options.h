@@ -8,7 +8,6 @@
 
 #include "tools/common/help.h"
 
-#include "lf/core/frame_numbers.h"
 #include "lf/core/ids.h"
 #include "lf/core/result.h"
 #include "lf/film/develop/frame_file.h"

@@ -301,7 +301,10 @@ export class Timeline {
     this.rows.forEach((row, i) => context.fillText(row.text(), 8, i * height + height / 2 + 12));
     if (this.dragged) drawDiamond(context, this.xOf(this.dragged.time), this.dragged.key.y, cssColour("--text"));
     this.range.value = String(state.frame);
-    this.range.setAttribute("aria-valuetext", `frame ${state.frame} of ${state.path.first_frame} to ${state.lastFrame}`);
+    this.range.setAttribute(
+      "aria-valuetext",
+      `frame ${state.frame} of ${state.path.first_frame} to ${state.lastFrame}`,
+    );
     this.clock.replaceChildren(
       element("b", {}, `${state.frame}`),
       ` / ${state.lastFrame}`,

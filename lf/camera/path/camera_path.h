@@ -10,7 +10,6 @@
 #include "lf/camera/path/focal_surface_source.h"
 #include "lf/camera/render_camera.h"
 #include "lf/core/check.h"
-#include "lf/core/frame_numbers.h"
 #include "lf/core/ids.h"
 
 namespace lf {

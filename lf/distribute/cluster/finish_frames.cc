@@ -8,7 +8,7 @@
 
 #include "lf/core/file.h"
 #include "lf/core/file_lock.h"
-#include "lf/core/frame_numbers.h"
+#include "lf/core/ids.h"
 #include "lf/render/pipeline/frame_range.h"
 #include "lf/render/state/record_fields.h"
 

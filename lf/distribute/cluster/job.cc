@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "lf/core/file.h"
-#include "lf/core/frame_numbers.h"
+#include "lf/core/ids.h"
 #include "lf/core/shell_word.h"
 #include "lf/core/value_named.h"
 #include "lf/render/pipeline/frame_range.h"

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "lf/core/frame_numbers.h"
+#include "lf/core/parse_number.h"
 #include "lf/film/develop/frame_file.h"
 #include "lf/film/develop/join_views.h"
 

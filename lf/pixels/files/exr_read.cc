@@ -23,7 +23,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "lf/core/frame_numbers.h"
+#include "lf/core/parse_number.h"
 #include "lf/pixels/files/layers.h"
 #include "lf/pixels/files/picture_decoder.h"
 #include "lf/pixels/files/stated_camera.h"

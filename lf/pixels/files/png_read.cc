@@ -14,7 +14,6 @@
 #include <utility>
 #include <vector>
 
-#include "lf/core/frame_numbers.h"
 #include "lf/core/parse_number.h"
 #include "lf/pixels/files/exif_orientation.h"
 #include "lf/pixels/files/picture_decoder.h"

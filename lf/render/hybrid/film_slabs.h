@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "lf/camera/render_camera.h"
-#include "lf/core/frame_numbers.h"
 #include "lf/core/ids.h"
 #include "lf/rebinning/slab_plan.h"
 #include "lf/render/hybrid/frame_sampling.h"

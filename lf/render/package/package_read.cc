@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "lf/core/frame_numbers.h"
+#include "lf/core/parse_number.h"
 #include "lf/light_field/model/brackets.h"
 #include "lf/render/package/package_file.h"
 #include "lf/render/package/package_format.h"

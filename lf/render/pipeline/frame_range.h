@@ -6,7 +6,6 @@
 #include <string_view>
 #include <vector>
 
-#include "lf/core/frame_numbers.h"
 #include "lf/core/ids.h"
 #include "lf/core/result.h"
 

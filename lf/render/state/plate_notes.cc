@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "lf/core/frame_numbers.h"
+#include "lf/core/ids.h"
 #include "lf/core/parse_number.h"
 #include "lf/core/value_named.h"
 #include "lf/render/collect/frame_lens.h"

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "lf/core/file.h"
-#include "lf/core/frame_numbers.h"
+#include "lf/core/ids.h"
 #include "lf/render/state/record_fields.h"
 #include "lf/render/state/report.h"
 

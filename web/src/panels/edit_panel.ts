@@ -329,11 +329,7 @@ export class EditPanel {
         return element(
           "li",
           { class: key.index === now ? "now" : "" },
-          element(
-            "button",
-            { click: () => state.setFrame(state.frameAt(key.time)) },
-            seconds(key.time),
-          ),
+          element("button", { click: () => state.setFrame(state.frameAt(key.time)) }, seconds(key.time)),
           element("span", { class: "value" }, valueText(key.value)),
           kind,
           element(

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lf/core/frame_numbers.h"
+#include "lf/core/ids.h"
 
 #include <gtest/gtest.h>
+
+#include "lf/core/parse_number.h"
 
 namespace lf {
 namespace {
