@@ -20,6 +20,7 @@
 #include "tools/common/validators.h"
 #include "tools/visualizer/export_page.h"
 #include "tools/visualizer/page_server.h"
+#include "tools/visualizer/web_origin.h"
 
 #include "lf/core/log.h"
 #include "lf/core/quantities.h"
@@ -44,7 +45,9 @@ constexpr lf::HelpTexts kHelp = {
     .details =
         R"(The page is served until Ctrl-C. It can only be opened on this machine, at an address that contains
 a secret. To see it on another machine, start lfvisualizer with --serve 8080, and there run
-ssh -L 8080:127.0.0.1:8080 HOST, where HOST is the machine that runs lfvisualizer.
+ssh -L 8080:127.0.0.1:8080 HOST, where HOST is the machine that runs lfvisualizer. If the port is
+taken there, use another one, as in ssh -L 9000:127.0.0.1:8080 HOST, also in the address. Behind a
+reverse proxy the page needs --allow-origin.
 
 --text prints lines of words; positions are in world units:
   lf_camera ID X Y Z              each LF camera; ID counts from 0
@@ -58,6 +61,7 @@ struct Arguments {
   lf::PageArguments page;
   lf::FrameRangeArguments frames;
   std::string path, watch, export_folder, live_memory = "512M", export_live = "32M";
+  std::vector<std::string> allowed_origins;
   int port = 0;
   lf::SettingOptions settings;
   uint64_t export_images = 400;
@@ -90,12 +94,19 @@ void AddOutput(CLI::App& app, Arguments& a) {
   lf::OptionGroup output(app, lf::kOutputGroup);
   auto* serve = output.Add("--serve PORT", a.port, "Port of the page (any that is free)")
                     ->check(CLI::Range(0, 65535));
+  auto* allow_origin = output.Add(
+      "--allow-origin URL", a.allowed_origins,
+      "Open the page through a reverse proxy of this address; may be repeated\n"
+      "URL is the scheme, the host and, if the browser shows one, the port, such as "
+      "https://fields.example. Through forwarded ports of this machine (ssh -L) the page opens "
+      "without it.");
   auto* watch =
       output.Add("--watch DIR", a.watch, "Show the frames that lfrenderer writes into DIR")
           ->check(lf::NotEmpty());
   auto* text =
       output.AddFlag("--text", a.text, "Print cameras, and which LF cameras each frame uses")
           ->excludes(serve)
+          ->excludes(allow_origin)
           ->excludes(watch);
   for (CLI::Option* const option : a.frames.AddTo(output, "print", "only LF cameras are printed"))
     option->needs(text);
@@ -105,6 +116,7 @@ void AddOutput(CLI::App& app, Arguments& a) {
                             "The program then ends, and serves no page.")
                        ->excludes(text)
                        ->excludes(serve)
+                       ->excludes(allow_origin)
                        ->excludes(watch)
                        ->check(lf::NotEmpty());
   output
@@ -200,6 +212,22 @@ void WarnOfDisagreement(const Arguments& a, const std::atomic<bool>& interrupted
   scene->events().Post("poses", lf::RecordLine({{"warning", warning}}));
 }
 
+lf::Result<std::vector<lf::WebOrigin>> AllowedOrigins(const Arguments& a) {
+  std::vector<lf::WebOrigin> origins;
+  for (const std::string& text : a.allowed_origins) {
+    const auto origin =
+        lf::ParseWebOrigin(text.ends_with('/') ? text.substr(0, text.size() - 1) : text);
+    if (!origin)
+      return lf::UsageError(fmt::format(
+          "--allow-origin {}: expected http:// or https://, a host and perhaps a port, such as "
+          "https://fields.example or http://10.0.0.7:8080; leave out folders, user names and *, "
+          "and write names in other scripts as the browser sends them (xn--...)",
+          text));
+    origins.push_back(*origin);
+  }
+  return origins;
+}
+
 lf::MissingImages MissingOf(const lf::ExportFacts& facts) {
   return {facts.missing_count, facts.image_count,
           fmt::format("{} of {} LF images are not in the export, because they are missing or "
@@ -219,6 +247,7 @@ lf::Result<void> Run(Arguments& a, const lf::CommonOptions& common) {
         "depths on the page");
   LF_ASSIGN_OR_RETURN(a.page.film, FilmOf(a, common));
   if (a.text) return PrintText(a, common);
+  LF_ASSIGN_OR_RETURN(const std::vector<lf::WebOrigin> allowed_origins, AllowedOrigins(a));
   LF_ASSIGN_OR_RETURN(const lf::MissingLimit limit, a.allow_missing.Limit());
   const std::atomic<bool>& interrupted = lf::CatchInterruptsOfJob();
   std::optional<lf::EndsSoon> until_served(std::in_place);
@@ -256,9 +285,12 @@ lf::Result<void> Run(Arguments& a, const lf::CommonOptions& common) {
         lf::ShortNumber(static_cast<double>(facts.live_bytes)))));
     return lf::EndWithMissing(MissingOf(facts), limit);
   }
-  LF_ASSIGN_OR_RETURN(const auto server, lf::PageServer::Open(*scene, a.port));
+  LF_ASSIGN_OR_RETURN(const auto server, lf::PageServer::Open(*scene, a.port, allowed_origins));
   LF_RETURN_IF_ERROR(lf::PrintReport(server->address() + "\n"));
   lf::LogInfo("open this address in a browser; Ctrl-C ends lfvisualizer");
+  for (const lf::WebOrigin& origin : allowed_origins)
+    lf::LogInfo("through the reverse proxy: {}/{}/, below the folder that it forwards, if any",
+                lf::OriginText(origin), server->token());
   // A server ends as it should, with exit code 0, however long its last answers take.
   until_served.reset();
   const std::jthread check([&] { WarnOfDisagreement(a, interrupted, scene.get()); });

@@ -359,9 +359,19 @@ while True:
 
     def test_requests_without_the_token_do_nothing(self):
         refused = [{"token": "0" * 32}, {"path": f"/{self.server.token[:-1]}/save"}, {"path": "/save"},
-                   {"host": f"evil.example:{self.server.port}"}, {"host": "127.0.0.1"},
+                   {"host": f"evil.example:{self.server.port}"}, {"host": "evil.example"},
+                   {"host": f"localhost.evil.example:{self.server.port}"},
+                   {"host": f"localhost.:{self.server.port}"},
+                   {"host": f"localhost@evil.example:{self.server.port}"},
                    {"Origin": "http://evil.example"}, {"Origin": "null"},
                    {"Origin": f"http://127.0.0.1:{self.server.port + 1}"},
+                   {"Origin": f"http://127.0.0.1:{self.server.port + 1}", "Sec_Fetch_Site": "same-site"},
+                   {"Origin": f"http://localhost:{self.server.port}"},
+                   {"Origin": f"http://evil.example:{self.server.port}", "Sec_Fetch_Site": "same-origin"},
+                   {"host": "127.0.0.1:9000", "Origin": f"http://127.0.0.1:{self.server.port}"},
+                   {"host": f"evil.example:{self.server.port}",
+                    "Origin": f"http://evil.example:{self.server.port}", "Sec_Fetch_Site": "same-origin"},
+                   {"host": f"evil.example:{self.server.port}", "X_Forwarded_Host": "127.0.0.1"},
                    {"Sec_Fetch_Site": "cross-site"}, {"Sec_Fetch_Site": "same-site"}]
         edit = {"text": self.text_before.replace("fps: 25", "fps: 24"), "frame": 1, "force": True}
         for how in refused:
@@ -379,6 +389,8 @@ while True:
         self.assertEqual(self.server.ask(preview), 404)
         # The page itself may do what was refused to others.
         own = {"Origin": f"http://127.0.0.1:{self.server.port}", "Sec_Fetch_Site": "same-origin"}
+        forwarded = {"host": "localhost:9000", "Origin": "http://localhost:9000"}
+        self.assertEqual(self.server.post("check", edit, **forwarded), 200)
         self.assertEqual(self.server.post("save", edit, **own), 200)
         self.assertIn("fps: 24", self.server.path.read_text())
         self.assertEqual(self.server.post("preview", edit, **own), 200)

@@ -93,7 +93,7 @@ TRIED = ("--format", "--values", "--colour-space", "--frame-alpha", "--z", "--ke
 OTHERS = ("--calibration-only", "--overwrite", "--force", "--clip", "--scale", "--unit-m", "--distance", "--frame",
           "--csv", "--fps", "--stereo-mm", "--clamp-frames", "--packages", "--frames-per-package", "--balance",
           "--shard-size", "--view", "--display", "--no-contact-sheet", "--back-and-forth", "--show", "--gain",
-          "--serve", "--export-images", "--export-live", "--live-memory", "--by-resolution")
+          "--serve", "--allow-origin", "--export-images", "--export-live", "--live-memory", "--by-resolution")
 
 
 def options_of(programs):

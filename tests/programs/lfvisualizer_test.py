@@ -115,6 +115,45 @@ class VisualizerTest(ProgramTestCase):
         server.send_signal(signal.SIGINT)
         self.assertEqual(server.wait(), 0)
 
+    @unittest.skipIf("pageless" in sys.argv, "it has no page")
+    def test_a_reverse_proxy_has_an_origin_that_is_told(self):
+        for wrong in ("fields.example", "null", "*", "ftp://fields.example", "https://fields.example/lf",
+                      "https://a@fields.example", "https://fields.example:0", "", "https://"):
+            self.fails(2, [f"--allow-origin {wrong}: expected http:// or https://, a host"], VISUALIZER, self.field,
+                       self.path, "--allow-origin", wrong)
+        self.fails(2, ["--allow-origin", "--text"], VISUALIZER, self.field, self.path, "--text", "--allow-origin",
+                   "https://fields.example")
+        server = subprocess.Popen([VISUALIZER, self.field, self.path, "--allow-origin", "https://Fields.example/",
+                                   "--allow-origin", "http://10.0.0.7:80"], stdout=subprocess.PIPE,
+                                  stderr=subprocess.PIPE, text=True)
+        self.addCleanup(server.stdout.close)
+        self.addCleanup(server.stderr.close)
+        self.addCleanup(server.kill)
+        address = urllib.parse.urlsplit(server.stdout.readline().strip())
+
+        def ask(host, origin):
+            connection = http.client.HTTPConnection("127.0.0.1", address.port, timeout=60)
+            self.addCleanup(connection.close)
+            connection.request("POST", address.path + "check", json.dumps({"text": self.path.read_text()}),
+                               {"Host": host, "Origin": origin})
+            answer = connection.getresponse()
+            return answer.status, json.loads(answer.read()).get("error", "")
+
+        for host in ("fields.example", "10.0.0.7", address.netloc):
+            self.assertEqual(ask(host, "https://fields.example"), (200, ""))
+            self.assertEqual(ask(host, "http://10.0.0.7"), (200, ""))
+            status, error = ask(host, "http://fields.example")
+            self.assertEqual(status, 403)
+            self.assertIn("or http://10.0.0.7; if this is your reverse proxy, start lfvisualizer with --allow-origin "
+                          "http://fields.example", error)
+        status, error = ask("other.example", "https://fields.example")
+        self.assertEqual(status, 403)
+        self.assertIn('not served to the host "other.example": open it at 127.0.0.1 or localhost, of any port, or '
+                      "https://fields.example, or http://10.0.0.7;", error)
+        server.send_signal(signal.SIGINT)
+        self.assertEqual(server.wait(), 0)
+        self.assertIn(f"through the reverse proxy: https://fields.example{address.path}, below", server.stderr.read())
+
     # Another page in the same browser can send requests to the server, but does not know the token. After DNS
     # rebinding, its requests also have another Host header. The server must refuse either.
     @unittest.skipIf("pageless" in sys.argv, "it has no page")

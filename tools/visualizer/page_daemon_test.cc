@@ -28,7 +28,7 @@ class Daemon {
     const auto listening = ListenOnThisMachine(0);
     EXPECT_TRUE(listening);
     port_ = listening->port;
-    daemon_ = std::make_unique<PageDaemon>(PageDoor{port_, kToken}, events, std::move(answerer));
+    daemon_ = std::make_unique<PageDaemon>(PageDoor{kToken, {}}, events, std::move(answerer));
     EXPECT_TRUE(daemon_->Start(listening->socket));
   }
   ~Daemon() { Stop(); }

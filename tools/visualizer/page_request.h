@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tools/visualizer/page_answers.h"
+#include "tools/visualizer/web_origin.h"
 
 namespace lf {
 
@@ -22,18 +23,20 @@ struct RequestHead {
   std::vector<std::pair<std::string, std::string>> headers;
 };
 
-// The address of the page: the token is a folder, and all names that the page requests lie below
-// it.
+// The secret and the names by which requests are answered.
 struct PageDoor {
-  int port = 0;
-  std::string token;
+  std::string token;  // a folder of the address; all names that the page requests lie below it
+  // Origins of reverse proxies, besides the pages that the server itself serves to this machine.
+  std::vector<WebOrigin> allowed_origins;
 };
 
 // Returns the refusal of a request, or nullopt if it may be answered. 403 and 405 are checked
 // first.
-//   403  Host is not 127.0.0.1 or localhost with our port (otherwise the DNS name of another site
-//        could point to this server); the path lacks the token; the path holds "..", "\" or "%",
-//        which no name of ours does; Origin or Sec-Fetch-Site name another site
+//   403  the name in Host is neither a loopback name nor that of an allowed origin (otherwise the
+//        DNS name of another site could point to this server); the port does not count, because
+//        forwarded ports differ from ours
+//   403  the path lacks the token; the path holds "..", "\" or "%", which no name of ours does
+//   403  Origin names another page (ComesFromOurPage()), or Sec-Fetch-Site another site
 //   405  the method is not GET, HEAD or POST
 //   415  Content-Encoding is not "identity": compressed bodies are never accepted
 //   400  GET or HEAD with a body; the length of the body is stated twice, or is no number

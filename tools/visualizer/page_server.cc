@@ -93,16 +93,19 @@ void PageServer::Parts::Watch() {
 PageServer::PageServer(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 PageServer::~PageServer() = default;
 
-Result<std::unique_ptr<PageServer>> PageServer::Open(PageScene& scene, int port) {
+Result<std::unique_ptr<PageServer>> PageServer::Open(PageScene& scene, int port,
+                                                     std::vector<WebOrigin> allowed_origins) {
   if (FindPageFile("index.html") == nullptr)
     return OutputError(
         "this lfvisualizer was built without its page, because Node.js and npm were missing: "
         "install them, and build it again, or use --text");
   LF_ASSIGN_OR_RETURN(std::string token, MakeToken());
   LF_ASSIGN_OR_RETURN(const PagePort listening, ListenOnThisMachine(port));
-  auto parts = std::make_unique<Parts>(scene, PageDoor{listening.port, token}, listening.socket);
+  auto parts =
+      std::make_unique<Parts>(scene, PageDoor{token, std::move(allowed_origins)}, listening.socket);
   std::unique_ptr<PageServer> server(new PageServer(std::move(parts)));
   server->address_ = fmt::format("http://127.0.0.1:{}/{}/", listening.port, token);
+  server->token_ = std::move(token);
   return server;
 }
 

@@ -28,6 +28,8 @@ bool PageStreams::Open(MHD_Connection* connection, Response* response) {
   }
   [[maybe_unused]] Stream* const kept = stream.release();  // Free() deletes it
   AddHeaders(response->get(), "text/event-stream");
+  // A reverse proxy such as nginx would collect news in a buffer, and send them when it is full.
+  MHD_add_response_header(response->get(), "X-Accel-Buffering", "no");
   return true;
 }
 

@@ -321,6 +321,7 @@ function wireNews(state: State): void {
       link.className = isThere ? "" : "bad";
       if (isThere && wasGone) {
         void state.askFrame();
+        state.checkAgain();
         state.emit("live");
       }
       wasGone = !isThere;

@@ -60,7 +60,8 @@ export class State {
   message: { text: string; isError: boolean } | null = null;
   document!: PathDocument;
   history!: History;
-  invalid: string | null = null; // why the text is no valid path; null if it is valid
+  invalid: string | null = null; // why the text is no valid path; null if it is valid, or not checked
+  unchecked: string | null = null; // why lfvisualizer has not checked the text; null if it has, or is about to
   isPlaying = false;
   addsKeys = false; // PathDocument.addsKeys of all edits
   isLive = false; // true while the live picture is shown
@@ -203,6 +204,7 @@ export class State {
       ++this.checking; // pending answers are about another text
       this.broken = error instanceof Error ? error.message : String(error);
       this.invalid = this.broken;
+      this.unchecked = null;
       this.emit("text");
       return false;
     }
@@ -220,15 +222,26 @@ export class State {
       const head = await post<PathHead>("check", { text });
       if (number !== this.checking) return;
       this.invalid = null;
+      this.unchecked = null;
       if (this.message?.isError) this.say("");
       if (head.id !== this.path.id) await this.take(head, text);
       else this.shownText = text;
     } catch (error) {
       if (number !== this.checking) return;
-      this.invalid = error instanceof Error ? error.message : String(error);
+      const message = error instanceof Error ? error.message : String(error);
+      // The parser's messages come with status 200. Any other status, such as a refusal, tells nothing about the text.
+      const isOfParser = error instanceof SourceError && error.status === 200;
+      this.invalid = isOfParser ? message : null;
+      this.unchecked = isOfParser ? null : message;
+      if (this.unchecked) this.say(`This edit was not checked: ${message}`, true);
     }
     this.emit("text");
     if (this.news && !this.isChanged) void this.fileHasChanged(this.news);
+  }
+
+  // Sends the text again if it has not been checked, for example because lfvisualizer could not be reached.
+  checkAgain(): void {
+    if (this.unchecked) void this.check();
   }
 
   async save(force = false): Promise<"saved" | "changed" | "failed"> {

@@ -5,6 +5,7 @@
 import { hasScripts, loadScript } from "./script_files";
 
 export class SourceError extends Error {
+  //   status  of HTTP; 0: there is no answer; 200: lfvisualizer found a mistake of the user
   constructor(
     message: string,
     readonly status: number,
@@ -22,7 +23,8 @@ async function refusal(response: Response): Promise<SourceError> {
   } catch {
     // The answer is not JSON, so it is not from lfvisualizer. The error below then states only the HTTP status.
   }
-  return new SourceError(`${response.status} ${response.statusText}`, response.status);
+  const status = `${response.status} ${response.statusText}`.trim();
+  return new SourceError(`a server before lfvisualizer, such as a reverse proxy, answers ${status}`, response.status);
 }
 
 async function ask(name: string, options?: RequestInit): Promise<Response> {

@@ -35,7 +35,7 @@ export class LiveCamera {
     });
     // After a change, the changed camera is shown until the server has evaluated the new path.
     const settle = () => {
-      if (!this.change && (state.isShown || state.invalid !== null)) this.changed = null;
+      if (!this.change && (state.isShown || state.invalid !== null || state.unchecked !== null)) this.changed = null;
       this.tell();
     };
     state.on(["path"], settle);

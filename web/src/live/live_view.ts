@@ -151,10 +151,10 @@ export class LiveView {
   }
 
   private tellFault(): void {
-    const { invalid } = this.state;
-    const fault = invalid
-      ? `The path has a fault; the picture is of the path before it. ${invalid}`
-      : this.pictureFault;
+    const { invalid, unchecked } = this.state;
+    let fault = this.pictureFault;
+    if (invalid) fault = `The path has a fault; the picture is of the path before it. ${invalid}`;
+    else if (unchecked) fault = `The last edit was not checked; the picture is of the path before it. ${unchecked}`;
     this.fault.textContent = fault;
     this.fault.hidden = fault === "";
   }

@@ -147,8 +147,9 @@ export class EditPanel {
   private draw(): void {
     const { state } = this;
     if (this.root.hidden || !state.scene.server || state.cameras.length === 0) return;
-    this.verdict.textContent = state.invalid ?? "";
-    this.verdict.className = state.invalid ? "bad" : "muted";
+    const { invalid, unchecked } = state;
+    this.verdict.textContent = invalid ?? (unchecked ? `This edit was not checked: ${unchecked}` : "");
+    this.verdict.className = invalid || unchecked ? "bad" : "muted";
     // The text area keeps text that is being typed, and typed text that is no YAML until the document changes.
     const text = state.document.text();
     if (this.typing === 0 && text !== this.filledWith) {

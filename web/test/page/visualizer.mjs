@@ -68,10 +68,10 @@ export async function serve(words) {
 }
 
 // Renders by software, so that all machines draw the same.
-export function openBrowser() {
+export function openBrowser(words = []) {
   return chromium.launch({
     executablePath: findBrowser(),
-    args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+    args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", ...words],
   });
 }
 
