@@ -34,6 +34,7 @@ export class SpaceView {
   private isShown = true;
   private frameCamera: FrameCamera | null = null;
   private through = false;
+  private isDark = true;
   private showsChosen = true; // true: also the frustum of the chosen LF camera is drawn
 
   constructor(
@@ -72,6 +73,9 @@ export class SpaceView {
     this.controls.addEventListener("change", () => this.draw());
     this.controls.addEventListener("start", () => (this.through = false));
     new ResizeObserver(() => this.resize()).observe(canvas);
+    // When the browser gives a lost graphics context back, three.js uploads everything with the next drawing, but has
+    // forgotten the colour of the background. Its own listener comes first, because it was added first.
+    canvas.addEventListener("webglcontextrestored", () => this.setTheme(this.isDark));
     this.listenForPicks(onPick, onPickPlace);
     this.resize();
   }
@@ -129,6 +133,7 @@ export class SpaceView {
   }
 
   setTheme(isDark: boolean): void {
+    this.isDark = isDark;
     this.renderer.setClearColor(new THREE.Color(cssColour("--space")));
     this.points.setTheme(isDark);
     this.model.setTheme(isDark);

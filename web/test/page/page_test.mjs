@@ -113,6 +113,39 @@ test("keys and the timeline move through the film", async () => {
   });
 });
 
+test("the view in space is drawn again after the browser has lost its graphics context", async () => {
+  await withChart(async (page) => {
+    await until(page, "app.state.use && app.state.density");
+    const picture = () => page.locator("#scene").screenshot();
+    await page.keyboard.press("2");
+    // The view may still be turning.
+    let before = await picture();
+    for (let last = null; !last?.equals(before); last = before, before = await picture())
+      await page.waitForTimeout(200);
+    const event = (name) =>
+      page.evaluate((kind) => {
+        const canvas = document.getElementById("scene");
+        const extension = canvas.getContext("webgl2").getExtension("WEBGL_lose_context");
+        window.lose ??= extension; // a lost context has no extensions
+        const happened = new Promise((resolve) => canvas.addEventListener(kind, resolve, { once: true }));
+        if (kind === "webglcontextlost") window.lose.loseContext();
+        else window.lose.restoreContext();
+        return happened.then(() => true);
+      }, name);
+    for (let i = 0; i < 2; ++i) {
+      await event("webglcontextlost");
+      assert.ok(!(await picture()).equals(before));
+      await event("webglcontextrestored");
+      let after = await picture();
+      for (let tries = 0; tries < 40 && !after.equals(before); ++tries) {
+        await page.waitForTimeout(100);
+        after = await picture();
+      }
+      assert.ok(after.equals(before));
+    }
+  });
+});
+
 test("a click on a point shows its LF image", async () => {
   await withChart(async (page) => {
     await until(page, "app.state.use");

@@ -86,8 +86,8 @@ export async function openPage(browser, address, { query = "", ...options } = {}
   const page = await context.newPage();
   const faults = [];
   page.on("console", (message) => {
-    // Messages of Chromium about drawing without a graphics card, and about tests that read pixels.
-    if (/GPU stall due to ReadPixels|swiftshader|willReadFrequently/i.test(message.text())) return;
+    // Messages of Chromium about drawing without a graphics card, and about tests that read pixels or lose contexts.
+    if (/GPU stall due to ReadPixels|swiftshader|willReadFrequently|CONTEXT_LOST_WEBGL/i.test(message.text())) return;
     if (["error", "warning"].includes(message.type())) faults.push(message.text());
   });
   page.on("pageerror", (error) => faults.push(error.message));
