@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "lf/live/lens_order.h"
+#include "lf/live/picture_lens.h"
 #include "lf/render/collect/collect_batch.h"
 #include "lf/render/collect/develop_options.h"
 #include "lf/render/collect/frame_lens.h"
@@ -174,6 +175,7 @@ LivePicture LiveRenderer::RenderOf(const RenderCamera& frame, const LiveWish& wi
   const double collect_s = SecondsSince(collecting);
   if (const auto facts = lens.facts()) live.uncovered_share = facts->coverage.uncovered_share;
   live.camera_distance_w = lens.camera_distance_w();
+  live.used_count = UsedCount(lens, index, select, pool_);
   if (wish.interrupted != nullptr && *wish.interrupted) return live;
   live.picture = Develop(live.plate, DevelopOptionsOf(some.encoding), pool_);
   live.render_s = SecondsSince(begin);

@@ -52,6 +52,9 @@ struct LivePicture {
   std::vector<LfImageId> images;  // LF images that were taken, ascending; some may have no weight
   // LF images in memory that the frame could take: images.size() is smaller if time is short
   size_t takeable_count = 0;
+  // UsedCount(): those of `images` that a frame would use. In memory are also LF images beside the
+  // lens, and those of lenses before it.
+  size_t used_count = 0;
   // Share of the opening of the lens that no LF image covers (LensCoverage::uncovered_share), and
   // the distance between the LF images of the picture in the lens plane, in world units. Of all
   // that it takes; 1 and 0 without LF images.

@@ -182,6 +182,40 @@ TEST(LiveRenderer, ShortTimeTakesFewImagesAndMoreTimeAll) {
   EXPECT_LE(still->uncovered_share, quick->uncovered_share);
 }
 
+// LF images of lenses before stay in memory, and those beside a lens are loaded with it.
+TEST(LiveRenderer, PicturesCountTheImagesThatTheFrameUses) {
+  const LightField field = testing::NoiseField(16);
+  const ImageIndex index(field);
+  const NoiseStore store;
+  ThreadPool pool(2);
+  for (const LensWeights weights : {LensWeights::kAuto, LensWeights::kNone}) {
+    LiveOptions options;
+    options.lens_weights = weights;
+    LiveRenderer live(index, store, options, pool);
+    size_t most = 0;
+    for (const double factor : {1.0, 0.4}) {
+      RenderCamera frame = Frame(0, 1);
+      frame.aperture.radius_w *= factor;
+      ASSERT_TRUE(live.Render(frame, {}));
+      live.images().WaitUntilLoaded();
+      const Result<LivePicture> picture = live.Render(frame, {});
+      ASSERT_TRUE(picture);
+      SelectOptions select;
+      select.reach = PixelReach::kNeighbours;
+      const FrameLens lens(index, frame, weights, select, pool);
+      const size_t used_count = UsedCount(lens, index, select, pool);
+      EXPECT_EQ(picture->used_count, used_count);
+      EXPECT_EQ(live.PlanLens(frame, SIZE_MAX, false).lens.used_count, used_count);
+      EXPECT_LT(used_count, picture->images.size());
+      EXPECT_GT(used_count, 4U);
+      most = std::max(most, used_count);
+      if (factor < 1) {
+        EXPECT_LT(used_count, most);
+      }
+    }
+  }
+}
+
 TEST(LiveRenderer, VirtualImagesCanBeLeftOut) {
   LightField field = testing::NoiseField();
   for (uint32_t i = 0; i < field.size(); i += 2) field.cameras[i].is_virtual = true;

@@ -4,8 +4,6 @@
 #include <optional>
 
 #include "lf/collection/gather_sampling.h"
-#include "lf/render/collect/frame_lens.h"
-#include "lf/selection/image_index.h"
 
 namespace lf {
 namespace {
@@ -30,6 +28,12 @@ void AddImage(const FrameLens& lens, const LightField& light_field, const Render
 
 }  // namespace
 
+size_t UsedCount(const FrameLens& lens, const ImageIndex& index, const SelectOptions& select,
+                 ThreadPool& pool) {
+  const TakingFrame taking = {lens.camera(), {}, [&](LfImageId id) { return lens.Takes(id); }};
+  return SelectImages(index, std::span(&taking, 1), select, pool).size();
+}
+
 PictureLens LensOfPicture(const LightField& light_field, const RenderCamera& frame,
                           LensWeights weights, ThreadPool& pool) {
   PictureLens picture;
@@ -38,6 +42,7 @@ PictureLens LensOfPicture(const LightField& light_field, const RenderCamera& fra
   select.reach = PixelReach::kNeighbours;
   const FrameLens lens(index, frame, weights, select, pool);
   picture.opening = lens.camera().aperture;
+  picture.used_count = UsedCount(lens, index, select, pool);
   picture.camera_distance_w = lens.camera_distance_w();
   if (const auto facts = lens.facts()) picture.uncovered_share = facts->coverage.uncovered_share;
   if (const FrameWeights* of_lens = lens.weights()) {

@@ -14,7 +14,10 @@
 #include "lf/core/ids.h"
 #include "lf/core/parallel.h"
 #include "lf/light_field/model/light_field.h"
+#include "lf/render/collect/frame_lens.h"
+#include "lf/selection/image_index.h"
 #include "lf/selection/lens_weights/frame_weights.h"
+#include "lf/selection/select.h"
 
 namespace lf {
 
@@ -34,9 +37,17 @@ struct PictureLens {
   Aperture opening;             // a ray is taken only if it passes through this opening
   bool has_feather = false;     // true: weights decrease towards the borders of LF images
   // As in LivePicture.
+  size_t used_count = 0;
   double uncovered_share = 1;
   double camera_distance_w = 0;
 };
+
+// Returns the number of LF images of a light field that a frame with this lens uses: those with a
+// weight somewhere that see a part of what is filmed.
+//   index   of the light field of the lens
+//   select  as for the lens
+size_t UsedCount(const FrameLens& lens, const ImageIndex& index, const SelectOptions& select,
+                 ThreadPool& pool);
 
 // Returns the lens of a picture that takes all LF images of the light field, with the weights of
 // LiveRenderer::Render().

@@ -85,6 +85,7 @@ std::string LiveView::BytesOf(const LivePicture& live) const {
   Json json = FactsOfImages();
   json["images"] = live.images.size();
   json["takeable"] = live.takeable_count;
+  json["used"] = live.used_count;
   json["uncovered_share"] = live.uncovered_share;
   json["camera_distance"] = live.camera_distance_w;
   json["render_ms"] = 1e3 * live.render_s;
@@ -107,6 +108,7 @@ PageAnswer LiveView::AnswerLens(const RenderCamera& frame, size_t most_images, b
   const LiveRenderer::LensPlan plan = renderer_.PlanLens(frame, most_images, recorded_only);
   Json json = FactsOfImages();
   json["takeable"] = plan.takeable_count;
+  json["used"] = plan.lens.used_count;
   return {200, "application/octet-stream", LensBytes(plan, frame, std::move(json))};
 }
 

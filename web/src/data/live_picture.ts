@@ -7,6 +7,7 @@ import { readPicture, type GrowingPicture } from "./growing_picture";
 export interface LiveFacts {
   images: number; // number of LF images in this picture
   takeable: number; // number of LF images in memory that the frame could take
+  used: number; // number of LF images in this picture that a frame would use: the others have no weight
   resident: number; // number of LF images in memory
   needed: number; // number of LF images that the frame needs
   wanted: number; // number of those for which memory has room

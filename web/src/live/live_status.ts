@@ -3,6 +3,7 @@
 // a warning of double edges.
 
 import { fNumber, type FrameCamera } from "../data/frame_camera";
+import { countsOf, USES, type FrameUse } from "../data/frame_use";
 import type { LiveFacts } from "../data/live_picture";
 import type { DensityFacts } from "../data/scene";
 import { element } from "../element";
@@ -17,15 +18,21 @@ export function apertureText(camera: FrameCamera, unit_m: number): string {
   return `f/${precise(fNumber(camera), 3)}, ${millimetres(2 * camera.radius, unit_m)}`;
 }
 
-export function statusOf(state: State, camera: FrameCamera, facts: LiveFacts): HTMLElement[] {
+//   isWhole  true: the picture is a still one of the path's camera at this frame, with virtual LF images
+export function statusOf(state: State, camera: FrameCamera, facts: LiveFacts, isWhole: boolean): HTMLElement[] {
   const { unit_m } = state.path;
   const parts = [
     part("lens", `${apertureText(camera, unit_m)} · focus ${length(camera.focusDistance)}`),
     part("images", imagesText(facts, unit_m)),
   ];
   const isLoading = facts.done < facts.wanted;
+  const { use } = state;
+  const difference = isWhole && !isLoading && use?.frame === state.frame ? differenceText(facts, use) : null;
+  if (difference) parts.push(part("difference", difference, "none", DIFFERENCE_HELP));
   const isLacking = 1 - facts.uncovered_share < LEAST_RECORDED && !isLoading;
-  if (facts.images > 0) parts.push(part("recorded", recordedText(facts), isLacking ? "gentle" : "none"));
+  // Without lens weights, neither the spacing of the LF images nor their share of the lens is known.
+  if (facts.images > 0 && facts.camera_distance > 0)
+    parts.push(part("recorded", recordedText(facts), isLacking ? "gentle" : "none"));
   if (isLoading) parts.push(part("loading", `loading ${shortNumber(facts.done)} of ${shortNumber(facts.wanted)}`));
   if (facts.wanted < facts.needed) parts.push(part("memory", memoryText(facts), "gentle", MEMORY_HELP));
   if (facts.first_broken) parts.push(part("broken", brokenText(facts), "loud", BROKEN_HELP));
@@ -66,10 +73,29 @@ function part(name: string, text: string, level = "none", title: string | null =
   return element("span", { "data-part": name, "data-level": level, title }, text);
 }
 
-function imagesText({ images, takeable, camera_distance }: LiveFacts, unit_m: number): string {
-  const of = images < takeable ? ` of ${shortNumber(takeable)}` : "";
+// Quick pictures are made of some of the LF images. Those without a weight count in neither number of a still picture.
+function imagesText({ images, takeable, used, camera_distance }: LiveFacts, unit_m: number): string {
   const spacing = camera_distance > 0 ? `, spacing ${millimetres(camera_distance, unit_m)}` : "";
-  return `${shortNumber(images)}${of} ${images === 1 && !of ? "LF image" : "LF images"}${spacing}`;
+  if (images < takeable) return `${shortNumber(images)} of ${shortNumber(takeable)} LF images${spacing}`;
+  return `${shortNumber(used)} ${used === 1 ? "LF image" : "LF images"}${spacing}`;
+}
+
+const DIFFERENCE_HELP =
+  "A frame is made of the LF images that the options of lfvisualizer and its packages allow, and of all that the lens " +
+  "sees. The live picture obeys neither --max-images nor --max-angle, and has memory for a limited number of LF images.";
+
+// Says how many LF images the frame takes if the live picture has another number, and why; null if both are equal.
+export function differenceText({ used, wanted, needed, broken }: LiveFacts, use: FrameUse): string | null {
+  const ofFrame = use.ids.length;
+  if (used === ofFrame) return null;
+  const counts = countsOf(use);
+  const reasons: string[] = [];
+  if (counts[USES.indexOf("limit")] > 0) reasons.push("limited by --max-images or its package");
+  if (counts[USES.indexOf("angle")] > 0) reasons.push("limited by --max-angle");
+  if (used < ofFrame && wanted < needed) reasons.push("all that the lens sees");
+  if (used < ofFrame && broken > 0) reasons.push("broken ones included");
+  if (reasons.length === 0) reasons.push("at the size of the film");
+  return `the frame takes ${shortNumber(ofFrame)}, ${reasons.join(", ")}`;
 }
 
 function recordedText({ uncovered_share }: LiveFacts): string {

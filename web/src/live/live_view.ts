@@ -30,6 +30,7 @@ export class LiveView {
   private readonly listeners: (() => void)[] = [];
   private pictureFault = "";
   private shownCamera: FrameCamera | null = null; // of the picture that is shown
+  private wholePath = ""; // path of the picture that is shown if it is a still one with virtual LF images
   private version = 0; // number of pictures shown so far
   private wanted = ""; // path of the newest picture that was wanted
 
@@ -44,7 +45,7 @@ export class LiveView {
     state.on(["exposure"], () => this.draw());
     state.on(["live"], () => this.requests.loaded());
     state.on(["text"], () => this.tellFault());
-    state.on(["text", "density"], () => this.tellStatus());
+    state.on(["text", "density", "use"], () => this.tellStatus());
     document.addEventListener("visibilitychange", () => this.startOrStop());
     let width = 0;
     new ResizeObserver(() => {
@@ -135,6 +136,7 @@ export class LiveView {
       Object.assign(this.canvas.dataset, { still: isStill, focus: camera.focusDistance, by: picture.by });
       this.draw();
       this.shownCamera = camera;
+      this.wholePath = isStill && !this.recordedOnly ? oneFramePath(camera, state.path) : "";
       this.tellStatus();
       for (const listener of this.listeners) listener();
     } catch (error) {
@@ -146,8 +148,11 @@ export class LiveView {
   }
 
   private tellStatus(): void {
-    if (this.shown && this.shownCamera)
-      this.status.replaceChildren(...statusOf(this.state, this.shownCamera, this.shown.facts));
+    const { shown, shownCamera, state } = this;
+    if (!shown || !shownCamera) return;
+    // An exported page has the LF images for small pictures only, which says nothing about the frame.
+    const isWhole = state.scene.server && state.isShown && this.wholePath === oneFramePath(state.camera, state.path);
+    this.status.replaceChildren(...statusOf(state, shownCamera, shown.facts, isWhole));
   }
 
   private tellFault(): void {

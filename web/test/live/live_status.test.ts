@@ -3,8 +3,9 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import type { LiveFacts } from "../../src/data/live_picture";
+import { USES, type FrameUse } from "../../src/data/frame_use";
 import type { DensityFacts } from "../../src/data/scene";
-import { copiesText, memoryText } from "../../src/live/live_status";
+import { copiesText, differenceText, memoryText } from "../../src/live/live_status";
 import { bytes, byteSize } from "../../src/words";
 
 test("sizes are rounded up, and can be given to the programs", () => {
@@ -31,4 +32,23 @@ test("copies that are far apart are shown with the command that fills the lens",
   assert.equal(copiesText(density, "", false), null);
   assert.equal(copiesText({ copies_px: null } as DensityFacts, command, false), null);
   assert.equal(copiesText(null, command, false), null);
+});
+
+test("a live picture that has not the LF images of the frame says why", () => {
+  const facts = { used: 69, wanted: 100, needed: 100, broken: 0 } as LiveFacts;
+  const use = (count: number, why: (typeof USES)[number] | null = null): FrameUse => ({
+    frame: 1,
+    cameraDistance: null,
+    ids: new Uint32Array(count),
+    shares: new Float32Array(count),
+    ofCameras: Uint8Array.from(why ? [USES.indexOf("used"), USES.indexOf(why)] : [USES.indexOf("used")]),
+  });
+  assert.equal(differenceText(facts, use(69, "limit")), null);
+  assert.equal(differenceText(facts, use(9, "limit")), "the frame takes 9, limited by --max-images or its package");
+  assert.equal(differenceText(facts, use(9, "angle")), "the frame takes 9, limited by --max-angle");
+  assert.equal(differenceText(facts, use(70)), "the frame takes 70, at the size of the film");
+  assert.equal(
+    differenceText({ ...facts, needed: 800, broken: 2 }, use(20_000)),
+    "the frame takes 20 k, all that the lens sees, broken ones included",
+  );
 });

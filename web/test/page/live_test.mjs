@@ -278,6 +278,28 @@ test("two settings are compared, and edges in focus are coloured", async () => {
   );
 });
 
+test("the live picture says if the frame takes another number of LF images, and why", async () => {
+  const path = await writePath(WIDE);
+  const difference = "[data-part=difference]";
+  await withPage([chart, path], async (page) => {
+    await openLive(page);
+    await allLoaded(page);
+    await until(page, "app.live.view.shown.facts.used === app.state.use?.ids.length");
+    assert.equal(await page.locator(difference).count(), 0);
+  });
+  await withPage([chart, path, "--max-images", "9"], async (page) => {
+    await openLive(page);
+    await allLoaded(page);
+    await page.waitForSelector(difference);
+    assert.equal(await page.textContent(difference), "the frame takes 9, limited by --max-images or its package");
+    // The number is that of the path's lens, not of one that is being changed.
+    await page.mouse.move(300, 300);
+    await page.mouse.wheel(0, 300);
+    await until(page, "app.state.isChanged && app.state.isShown");
+    await page.waitForSelector(difference);
+  });
+});
+
 test("the live picture of a dense light field says what it is made of", withShop, async () => {
   const path = await writePath(SHOP_PATH);
   await withPage([SHOP, path], async (page) => {
@@ -287,13 +309,18 @@ test("the live picture of a dense light field says what it is made of", withShop
     const density = await page.evaluate("lfvisualizer.state.density");
     assert.ok(Math.abs(facts.camera_distance - density.camera_distance) < 0.1 * density.camera_distance);
     const status = await page.textContent("#live-status");
-    assert.match(status, new RegExp(`${facts.images} LF images, spacing 3\\d(\\.\\d)? mm`));
+    assert.match(status, new RegExp(`${facts.used} LF images, spacing 3\\d(\\.\\d)? mm`));
     assert.match(status, /of the lens recorded/);
+    assert.equal(facts.used, await page.evaluate("lfvisualizer.state.use.ids.length"));
+    assert.ok(facts.used < facts.images);
   });
 });
 
 for (const [width, height] of [
   [390, 844],
+  [360, 740],
+  [740, 360],
+  [844, 390],
   [1000, 600],
 ])
   test(`the live picture fits a window of ${width} × ${height}`, async () => {
@@ -310,7 +337,16 @@ for (const [width, height] of [
         assert.ok(isWithin);
         for (const button of await page.locator("button:visible").all())
           assert.ok((await button.getAttribute("aria-label")) ?? (await button.textContent()));
+        // Picture and panels have room, and the buttons around them are not cut off; panels and views can be scrolled.
+        assert.ok(box.height > 0.25 * height && box.y + box.height <= height, `${box.y}, ${box.height}`);
+        const panels = await page.locator("#panels").boundingBox();
+        assert.ok(panels.height > 0.3 * height && panels.width > 240, `${panels.width} x ${panels.height}`);
+        for (const part of await page.locator("header button, #tabs button, footer button, footer input").all()) {
+          const { x, y, width: wide, height: high } = await part.boundingBox();
+          const place = `${await part.textContent()}: ${x}, ${y}, ${wide} x ${high}`;
+          assert.ok(x >= 0 && y >= 0 && x + wide <= width && y + high <= height, place);
+        }
       },
-      { viewport: { width, height }, colorScheme: "light", hasTouch: width < 500 },
+      { viewport: { width, height }, colorScheme: "light", hasTouch: Math.min(width, height) < 500 },
     );
   });

@@ -51,6 +51,7 @@ export class ExportedPictures implements Pictures {
       facts: {
         images: fit.images,
         takeable: loaded.length,
+        used: lens.images.length,
         resident: loaded.length,
         needed: this.live.images.length,
         wanted: this.live.images.length,
