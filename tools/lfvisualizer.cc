@@ -13,6 +13,7 @@
 #include "tools/common/frame_options.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/light_field_argument.h"
+#include "tools/common/next_step.h"
 #include "tools/common/program.h"
 #include "tools/common/programs.h"
 #include "tools/common/progress.h"
@@ -24,6 +25,7 @@
 
 #include "lf/core/log.h"
 #include "lf/core/quantities.h"
+#include "lf/core/shell_word.h"
 #include "lf/core/spelling.h"
 #include "lf/import/paths/open_path.h"
 #include "lf/import/paths/recording_times.h"
@@ -73,11 +75,10 @@ void AddInput(CLI::App& app, Arguments& a) {
   a.light_field.AddTo(app);
   a.light_field.AddReduceTo(app);
   lf::OptionGroup input(app, lf::kInputGroup);
-  input
-      .Add("PATH", a.path,
-           std::string(lf::kPathHelp) +
-               " The page converts all but our own to YAML, which it saves beside PATH.")
-      ->required();
+  // Without a path, Run() advises how to make one.
+  input.Add("PATH", a.path,
+            std::string(lf::kPathHelp) +
+                " The page converts all but our own to YAML, which it saves beside PATH.");
   input.Add("PACKAGE", a.page.packages, "Packages that lfpreprocessor made for this path");
   input
       .Add(
@@ -236,7 +237,25 @@ lf::MissingImages MissingOf(const lf::ExportFacts& facts) {
           "once they are mended, export again; both need a new folder for --export"};
 }
 
+// Returns the error that no path was given. Returns that of the light field if it cannot be opened,
+// because the command that makes a path would then fail.
+lf::Error WithoutPath(const Arguments& a) {
+  if (const auto light_field = a.light_field.Open(); !light_field) return light_field.error();
+  std::vector<std::string> command = {"lfexample", lf::FileArgument(a.light_field.path)};
+  lf::LightFieldWords words = a.light_field;
+  words.reduce = 1;  // lfexample has no --reduce
+  const std::vector<std::string> options = words.Words();
+  command.insert(command.end(), options.begin(), options.end());
+  command.insert(command.end(), {"-o", lf::FreeName("path", ".yaml")});
+  return lf::UsageError(
+      fmt::format("PATH is missing: give the camera path of a film after {}. If there is none yet, "
+                  "make one to begin with, which the page can change (--move chooses its "
+                  "movement): {}",
+                  a.light_field.path, lf::ShellCommand(command)));
+}
+
 lf::Result<void> Run(Arguments& a, const lf::CommonOptions& common) {
+  if (a.path.empty()) return WithoutPath(a);
   if (a.text && !a.page.packages.empty())
     return lf::UsageError(
         "--text cannot be used with packages: leave the packages out, or leave --text out to show "

@@ -154,6 +154,10 @@ class VisualizerTest(ProgramTestCase):
         self.assertEqual(server.wait(), 0)
         self.assertIn(f"through the reverse proxy: https://fields.example{address.path}, below", server.stderr.read())
 
+    def test_without_a_path_a_command_that_makes_one_is_printed(self):
+        self.fails(2, ["PATH is missing", f": lfexample {self.field} -o path"], VISUALIZER, self.field)
+        self.fails(3, ["nothing"], VISUALIZER, self.folder / "nothing")
+
     # Another page in the same browser can send requests to the server, but does not know the token. After DNS
     # rebinding, its requests also have another Host header. The server must refuse either.
     @unittest.skipIf("pageless" in sys.argv, "it has no page")
