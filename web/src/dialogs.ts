@@ -95,7 +95,7 @@ export function showKeys(): void {
       { class: "muted" },
       "In space: drag to turn, wheel to come nearer, right button to shift, click an LF camera " +
         "to see its image, or a point of the depths to focus on it. In pictures: click to focus there, Shift-click three " +
-        "places to tilt the focus plane through them. In the timeline: drag diamonds.",
+        "places to tilt the focus plane through them. In the timeline: drag keys.",
     ),
     closeButton(),
   );

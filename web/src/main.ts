@@ -13,6 +13,7 @@ import { EditPanel } from "./panels/edit_panel";
 import { FramePanel } from "./panels/frame_panel";
 import { ImagePanel } from "./panels/image_panel";
 import { RenderPanel } from "./panels/render_panel";
+import { setEasedKey } from "./path/eases";
 import { State, type PreviewFacts } from "./state";
 import { Timeline } from "./timeline";
 import { SpaceView, type Preset } from "./view/space_view";
@@ -215,7 +216,7 @@ function wireKeys(
     "?": () => showKeys(),
     k: () =>
       state.edit("add a key of focus distance", (path) =>
-        path.setKeyframe("focus_distance", state.time, state.camera.focusDistance),
+        setEasedKey(path, "focus_distance", state.time, state.camera.focusDistance),
       ),
     p: () => (show("render"), void render.start()),
     l: () => look(state.isLive ? "space" : "live"),

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The timeline of the film: plays and scrubs, and shows curves of quantities over the frames. Keys of the path are
-// diamonds that can be dragged.
+// marks that can be dragged.
 
 import { fNumber } from "./data/frame_camera";
 import { byId, cssColour, element, fitCanvas } from "./element";
+import { sidesOf, type Side } from "./path/eases";
 import type { Quantity } from "./path/path_facts";
 import type { State } from "./state";
 import { millimetres, precise, seconds, shortNumber } from "./words";
@@ -20,12 +21,14 @@ interface Row {
 
 const LABELS = 118; // width of the labels to the left of the curves, CSS pixels
 const MARGIN = 12;
+const KEY = 5; // half the size of a key's mark, CSS pixels
 const LEAST_HEIGHT = 30; // of a row, CSS pixels
 
 interface Key {
   quantity: Quantity;
   index: number;
   time: number;
+  sides: [Side, Side];
   x: number;
   y: number;
 }
@@ -222,7 +225,14 @@ export class Timeline {
         const keys = quantity.keyframes.map((key, index) => ({ index, time: key.time }));
         if (quantity.baseIsKey) keys.unshift({ index: -1, time: 0 });
         for (const { index, time } of keys)
-          this.keys.push({ quantity, index, time, x: this.xOf(time), y: (i + 1) * height - 8 });
+          this.keys.push({
+            quantity,
+            index,
+            time,
+            sides: sidesOf(quantity, index),
+            x: this.xOf(time),
+            y: (i + 1) * height - 8,
+          });
       }
     });
   }
@@ -280,7 +290,7 @@ export class Timeline {
     }
     context.stroke();
     for (const key of this.keys)
-      if (key.y > top && key.y < top + height) drawDiamond(context, key.x, key.y, cssColour(row.colour));
+      if (key.y > top && key.y < top + height) drawKey(context, key, key.x, cssColour(row.colour));
   }
 
   private drawMark(): void {
@@ -299,7 +309,7 @@ export class Timeline {
     const height = this.rowHeight();
     context.fillStyle = cssColour("--text");
     this.rows.forEach((row, i) => context.fillText(row.text(), 8, i * height + height / 2 + 12));
-    if (this.dragged) drawDiamond(context, this.xOf(this.dragged.time), this.dragged.key.y, cssColour("--text"));
+    if (this.dragged) drawKey(context, this.dragged.key, this.xOf(this.dragged.time), cssColour("--text"));
     this.range.value = String(state.frame);
     this.range.setAttribute(
       "aria-valuetext",
@@ -317,12 +327,27 @@ function round(time: number): number {
   return Math.round(time * 1e6) / 1e6;
 }
 
-function drawDiamond(context: CanvasRenderingContext2D, x: number, y: number, colour: string): void {
+// Draws the mark of a key: a diamond, whose sides are round where the value is at rest, and flat where it jumps.
+function drawKey(context: CanvasRenderingContext2D, { y, sides }: Key, x: number, colour: string): void {
   context.fillStyle = colour;
   context.beginPath();
-  context.moveTo(x, y - 5);
-  context.lineTo(x + 5, y);
-  context.lineTo(x, y + 5);
-  context.lineTo(x - 5, y);
+  context.moveTo(x, y - KEY);
+  drawSide(context, sides[1], x, y, 1);
+  drawSide(context, sides[0], x, y, -1);
   context.fill();
+}
+
+// Continues the outline of a mark: from its top down the right side (sign 1), or from its bottom up the left one (-1).
+function drawSide(context: CanvasRenderingContext2D, side: Side, x: number, y: number, sign: number): void {
+  if (side === "round") {
+    context.arc(x, y, KEY, (-sign * Math.PI) / 2, (sign * Math.PI) / 2);
+    return;
+  }
+  if (side === "flat") {
+    context.lineTo(x + sign * (KEY - 1), y - sign * KEY);
+    context.lineTo(x + sign * (KEY - 1), y + sign * KEY);
+  } else {
+    context.lineTo(x + sign * KEY, y);
+  }
+  context.lineTo(x, y + sign * KEY);
 }

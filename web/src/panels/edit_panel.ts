@@ -4,6 +4,7 @@
 
 import { add } from "../data/frame_camera";
 import { element } from "../element";
+import { deleteKey, INTERPOLATIONS, setEasedKey } from "../path/eases";
 import { dolly, focusPull, orbit } from "../path/generators";
 import type { Quantity } from "../path/path_facts";
 import type { PathValue } from "../path/path_quantities";
@@ -83,6 +84,10 @@ function withPart(value: PathValue, index: number, x: number): PathValue {
   const name = Object.keys(value)[index];
   return { ...value, [name]: x };
 }
+
+const EASES_HELP =
+  "How the value gets here from the key before. ease: from rest to rest; ease in: leaves from rest, and goes on; " +
+  "ease out: comes to rest; smooth: passes keys without a stop; linear: at constant speed; step: jumps here";
 
 export function valueText(value: PathValue): string {
   if (typeof value === "number") return precise(value, 5);
@@ -244,7 +249,7 @@ export class EditPanel {
           this.redrawFields();
         });
         state.edit(`change ${field.label.toLowerCase()}`, (path) => {
-          if (quantity.keyframes.length > 0 || quantity.baseIsKey) path.setKeyframe(quantity.name, time, changed);
+          if (quantity.keyframes.length > 0 || quantity.baseIsKey) setEasedKey(path, quantity.name, time, changed);
           else path.setBase(quantity.name, changed);
         });
       });
@@ -261,7 +266,7 @@ export class EditPanel {
         title: "A key of this value at this frame",
         click: () =>
           state.edit(`add a key of ${field.label.toLowerCase()}`, (path) =>
-            path.setKeyframe(quantity.name, time, value),
+            setEasedKey(path, quantity.name, time, value),
           ),
       },
       "◆ Key",
@@ -317,14 +322,15 @@ export class EditPanel {
           "select",
           {
             "aria-label": `How the value gets to ${seconds(key.time)}`,
-            disabled: key.index < 0,
+            disabled: key === keys[0],
+            title: key === keys[0] ? "No key is before this one" : EASES_HELP,
             change: () =>
               state.edit("change an interpolation", (path) =>
-                path.setKeyframe(quantity.name, key.time, key.value, kind.value as typeof key.interpolation),
+                path.setInterpolation(quantity.name, key.index, kind.value as typeof key.interpolation),
               ),
           },
-          ...["smooth", "linear", "step"].map((name) =>
-            element("option", { value: name, selected: name === key.interpolation }, name),
+          ...INTERPOLATIONS.map((name) =>
+            element("option", { value: name, selected: name === key.interpolation }, name.replace("_", " ")),
           ),
         );
         return element(
@@ -338,7 +344,7 @@ export class EditPanel {
             {
               "aria-label": `Delete the key at ${seconds(key.time)}`,
               click: () =>
-                state.edit(`delete a key of ${quantity.name}`, (path) => path.deleteKeyframe(quantity.name, key.index)),
+                state.edit(`delete a key of ${quantity.name}`, (path) => deleteKey(path, quantity.name, key.index)),
             },
             "✕",
           ),

@@ -84,6 +84,7 @@ export function dolly(path: PathDocument, options: DollyOptions): string {
   return `Dolly in ${round(seconds)} s`;
 }
 
+// Moves the focus from rest to rest.
 export function focusPull(path: PathDocument, options: FocusPullOptions): string {
   const { from, to, seconds, hold = 0, start = hold } = options;
   checkDuration(seconds, start);
@@ -91,7 +92,7 @@ export function focusPull(path: PathDocument, options: FocusPullOptions): string
     path.useFocusDistance(from);
     path.removeMotion("focus_distance", from);
     if (start > 0) path.setKeyframe("focus_distance", start, from);
-    path.setKeyframe("focus_distance", start + seconds, to);
+    path.setKeyframe("focus_distance", start + seconds, to, "ease");
     coverSeconds(path, start + seconds + hold);
   });
   return `Focus pull in ${round(seconds)} s`;

@@ -119,6 +119,19 @@ export class PathDocument {
     });
   }
 
+  // Sets how the value gets to a key from the key before. Only this word of the text changes.
+  setInterpolation(name: string, index: number, interpolation: Interpolation): void {
+    this.edit(() => {
+      const spec = quantitySpec(name);
+      const list = this.keyIn(["keyframes"], spec.keys);
+      if (!list || !this.quantity(name).keyframes[index])
+        throw new Error(`${spec.name} has no keyframe ${index + 1} in the list of keyframes`);
+      const item = ["keyframes", list, index];
+      if (this.yaml.has([...item, "interpolation"])) this.yaml.replace([...item, "interpolation"], interpolation);
+      else if (interpolation !== "smooth") this.yaml.add(item, "interpolation", interpolation);
+    });
+  }
+
   // Replaces all keys of the quantity, including the value in its section. There must be at least one key, and times
   // must ascend.
   setKeyframes(name: string, keyframes: readonly Keyframe[]): void {
@@ -402,9 +415,7 @@ export class PathDocument {
     const list = this.keyIn(["keyframes"], spec.keys)!;
     const item = ["keyframes", list, index];
     this.yaml.replace([...item, "value"], this.write(spec, list, value));
-    if (interpolation === undefined) return;
-    if (this.yaml.has([...item, "interpolation"])) this.yaml.replace([...item, "interpolation"], interpolation);
-    else if (interpolation !== "smooth") this.yaml.add(item, "interpolation", interpolation);
+    if (interpolation !== undefined) this.setInterpolation(spec.name, index, interpolation);
   }
 
   private insertKeyframe(spec: QuantitySpec, keyframe: Keyframe): void {

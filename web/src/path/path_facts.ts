@@ -2,7 +2,7 @@
 // Types of what a path file contains about quantities and constants, and functions that return their keys in the file.
 import type { ConstantSpec, ConstantValue, PathValue, QuantitySpec, Section, Shape, Unit } from "./path_quantities";
 
-export type Interpolation = "smooth" | "linear" | "step";
+export type Interpolation = "smooth" | "ease" | "ease_in" | "ease_out" | "linear" | "step";
 
 export interface Keyframe {
   time: number; // time of the key, seconds

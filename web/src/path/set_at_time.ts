@@ -2,6 +2,7 @@
 // Sets quantities at the time of a frame, as a person means it who looks at this frame: a quantity with keys gets a key
 // there, any other the value for the whole film. If PathDocument.addsKeys is true, every quantity gets a key.
 
+import { setEasedKey } from "./eases";
 import type { PathDocument } from "./path_document";
 import type { PathValue } from "./path_quantities";
 
@@ -10,7 +11,7 @@ import type { PathValue } from "./path_quantities";
 export function setAtTime(document: PathDocument, name: string, time: number, value: PathValue): void {
   const { keyframes, hasAccelerations } = document.quantity(name);
   if (hasAccelerations) document.removeMotion(name, value);
-  if (keyframes.length > 0 || document.addsKeys) document.setKeyframe(name, time, value);
+  if (keyframes.length > 0 || document.addsKeys) setEasedKey(document, name, time, value);
   else if (!hasAccelerations) document.setBase(name, value);
 }
 

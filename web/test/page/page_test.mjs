@@ -189,6 +189,66 @@ test("a key is edited, saved with its comments, and rendered", async () => {
   });
 });
 
+test("keys ease: a new one by itself, others as the list says, and the file has the words", async () => {
+  const text = CHART_PATH.replace(/keyframes:\n.*\n.*\n/, "");
+  await withChart(async (page, path) => {
+    await page.keyboard.press("End");
+    await until(page, "app.state.frame === 11");
+    await page.click("[data-tab=edit]");
+    await page.click("summary:has-text('Focus distance')");
+    await page.click("[data-add-key=focus_distance]");
+    await page.fill("[data-quantity=focus_distance]", "1.2");
+    await page.keyboard.press("Enter");
+    const shares = (expected) =>
+      until(
+        page,
+        `${JSON.stringify(expected)}.every((share, i) =>
+          Math.abs(app.state.cameras[i].focusDistance - 1 - 0.2 * share) < 1e-6)`,
+      );
+    await shares([0, 0.00856, 0.05792, 0.16308, 0.31744, 0.5]);
+    const list = page.locator("[aria-label='How the value gets to 1.00 s']");
+    assert.equal(await list.inputValue(), "ease");
+    assert.ok(await page.isDisabled("[aria-label='How the value gets to 0.00 s']"));
+    assert.deepEqual(await list.locator("option").allTextContents(), [
+      "smooth",
+      "ease",
+      "ease in",
+      "ease out",
+      "linear",
+      "step",
+    ]);
+    await list.selectOption("ease_out");
+    await shares([0, 0.1981, 0.3856]);
+    // The mark of the key at the end is round to the left, and so wider there than a diamond.
+    const isMarked = () =>
+      page.evaluate(() => {
+        const canvas = document.getElementById("curves");
+        const { clientWidth, clientHeight } = canvas;
+        const ratio = canvas.width / clientWidth;
+        const [x, y] = [clientWidth - 12 - 3, (clientHeight / 5) * 3 - 8 - 3];
+        const { data } = canvas.getContext("2d").getImageData(x * ratio, y * ratio, 1, 1);
+        return data[3] > 128;
+      });
+    assert.ok(await isMarked());
+    await list.selectOption("linear");
+    await shares([0, 0.1, 0.2]);
+    assert.ok(!(await isMarked()));
+    await list.selectOption("ease");
+    await shares([0, 0.00856, 0.05792]);
+    await page.evaluate("lfvisualizer.state.setFrame(6)");
+    await page.waitForSelector("h2:has-text('At frame 6')");
+    await page.fill("[data-quantity=focus_distance]", "1.12");
+    await page.keyboard.press("Enter");
+    await until(page, "app.state.document.quantity('focus_distance').keyframes.length === 2 && app.state.isShown");
+    await page.keyboard.press("Control+s");
+    await until(page, "!app.state.isChanged");
+    const saved = await readFile(path, "utf8");
+    assert.match(saved, /\{time: 0.5, value: 1.12, interpolation: ease_in\}/);
+    assert.match(saved, /\{time: 1, value: 1.2, interpolation: ease_out\}/);
+    await run("lfcammvminfo", [path]);
+  }, text);
+});
+
 test("a page shows the file as it is now, and loses no edit to another program", async () => {
   await withChart(async (page, path) => {
     const focusThere = () => page.evaluate("lfvisualizer.state.cameras[10].focusDistance");

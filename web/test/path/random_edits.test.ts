@@ -3,6 +3,7 @@
 // changes.
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { deleteKey, INTERPOLATIONS, setEasedKey } from "../../src/path/eases";
 import { PathDocument } from "../../src/path/path_document";
 import type { Interpolation } from "../../src/path/path_facts";
 import { quantitySpec } from "../../src/path/path_quantities";
@@ -54,17 +55,17 @@ function facts(path: PathDocument, name: string): string {
   return JSON.stringify({ base, keyframes, speed, accelerations });
 }
 
-const kInterpolations: (Interpolation | undefined)[] = [undefined, "smooth", "linear", "step"];
+const kInterpolations: (Interpolation | undefined)[] = [undefined, ...INTERPOLATIONS];
 
 function editAtRandom(path: PathDocument, name: string, random: (below: number) => number): void {
   const { keyframes, baseIsKey } = path.quantity(name);
   const index = Math.floor(random(keyframes.length + (baseIsKey ? 1 : 0))) - (baseIsKey ? 1 : 0);
   const time = Math.round(random(40)) / 10;
-  switch (Math.floor(random(9))) {
+  switch (Math.floor(random(12))) {
     case 0:
     case 1:
     case 2:
-      path.setKeyframe(name, time, drawValue(name, random), kInterpolations[Math.floor(random(4))]);
+      path.setKeyframe(name, time, drawValue(name, random), kInterpolations[Math.floor(random(7))]);
       break;
     case 3:
     case 4:
@@ -80,6 +81,13 @@ function editAtRandom(path: PathDocument, name: string, random: (below: number) 
       if (random(3) < 1) path.removeMotion(name);
       break;
     case 8:
+    case 9:
+      setEasedKey(path, name, time, drawValue(name, random));
+      break;
+    case 10:
+      deleteKey(path, name, index);
+      break;
+    case 11:
       switch (name) {
         case "look_at":
           path.useLookAt(drawValue(name, random) as number[]);
