@@ -44,12 +44,12 @@ constexpr lf::HelpTexts kHelp = {
   lfrenderer capture/ path.yaml -o frames --densify      # smooth blur from few LF images)",
     .details =
         R"(DIR receives frame_0001.exr ..., contact_sheet.png and report.json. EXR frames contain linear light
-(R, G, B), the number of rays of each element (count.R, count.G, count.B; with lens weights the sum
-of their weights), and the share of channels with a ray (coverage). With lens weights they also
-contain the number of LF images of equal weight that would give the same noise (effective); with
-rebinned rays, the share of light that is interpolated (interpolated). With --background none they
-also have premultiplied alpha (A); PNG frames have straight alpha. EXR frames state their camera, lens
-and primaries as standard attributes of OpenEXR (doc/formats/frame.md).
+(R, G, B), the number of rays of each element (count_red, count_green, count_blue; with lens weights
+the sum of their weights), and the share of channels with a ray (coverage). With lens weights they
+also contain the number of LF images of equal weight that would give the same noise (effective);
+with rebinned rays, the share of light that is interpolated (interpolated). With --background none
+they also have premultiplied alpha (A); PNG frames have straight alpha. EXR frames state their
+camera, lens and primaries as standard attributes of OpenEXR (doc/formats/frame.md).
 
 Each package has its own report, report-package-0000.json, and a package that is rendered alone has
 its own contact sheet. Many machines can therefore render packages into one DIR at the same time.

@@ -18,8 +18,8 @@ void AddOutput(CLI::App& app, ThroughArguments& a) {
       .Add("-o,--output OUT", a.outputs,
            "File to write, .exr or .png in sRGB, or folder of frames\n"
            "Files may be given several times. Channels and attributes are those of a frame. The "
-           "channels count.R, count.G and count.B tell the number of rays of which the statistic "
-           "is taken.")
+           "channels count_red, count_green and count_blue tell the number of rays of which the "
+           "statistic is taken.")
       ->required()
       ->check(NotEmpty())
       ->check(TakesFiles(".exr .png folder"));

@@ -15,6 +15,7 @@
 #include <variant>
 
 #include "lf/core/parse_number.h"
+#include "lf/film/develop/picture.h"
 #include "lf/light_field/model/radiance.h"
 #include "lf/pixels/files/image_file.h"
 
@@ -144,15 +145,17 @@ Result<GrowingPicture> ReadGrowingPicture(const fs::path& path, int max_side_px)
   if (read.info.channels < 3)
     return InputError(fmt::format("{}: has {} channels, expected at least R, G and B",
                                   path.string(), read.info.channels));
-  std::array<int, 3> count_channels = {-1, -1, -1};
   const auto channel_named = [&](const std::string& name) {
     const auto& names = read.info.channel_names;
     const auto found = std::find(names.begin(), names.end(), name);
     return found != names.end() ? static_cast<int>(found - names.begin()) : -1;
   };
-  for (int c = 0; c < 3; ++c) count_channels[c] = channel_named(std::string("count.") + "RGB"[c]);
-  if (std::find(count_channels.begin(), count_channels.end(), -1) != count_channels.end())
-    count_channels = {-1, -1, -1};
+  std::array<int, 3> count_channels = {-1, -1, -1};
+  for (const auto& names : {kCountChannels, kLayeredCountChannels}) {
+    std::array<int, 3> found = {};
+    std::transform(names.begin(), names.end(), found.begin(), channel_named);
+    if (std::find(found.begin(), found.end(), -1) == found.end()) count_channels = found;
+  }
   GrowingPicture picture;
   picture.full_width_px = read.info.width;
   picture.full_height_px = read.info.height;

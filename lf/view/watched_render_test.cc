@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 
+#include "lf/film/develop/picture.h"
 #include "lf/pixels/files/image_file.h"
 #include "lf/pixels/files/test_folder.h"
 
@@ -17,7 +19,8 @@ namespace fs = std::filesystem;
 class WatchedRenderTest : public FolderTest {
  protected:
   // Writes a frame whose elements (x, y) have R = x, G = y, B = 1, and x + y rays.
-  void Write(const std::string& name) {
+  void Write(const std::string& name,
+             const std::array<const char*, 3>& count_channels = kCountChannels) {
     const int width = 6, height = 4;
     Image<float> colours(width, height, 3, 1.0f);
     Image<uint32_t> counts(width, height);
@@ -29,8 +32,8 @@ class WatchedRenderTest : public FolderTest {
       }
     std::vector<ExrChannel> channels;
     for (int c = 0; c < 3; ++c) channels.push_back({{"RGB"[c]}, colours.view(), c});
-    for (int c = 0; c < 3; ++c)
-      channels.push_back({std::string("count.") + "RGB"[c], counts.view()});
+    for (const char* const count_channel : count_channels)
+      channels.push_back({count_channel, counts.view()});
     fs::create_directories((folder_ / name).parent_path());
     const auto written = WriteExr(folder_ / name, channels);
     ASSERT_TRUE(written) << written.error().message;
@@ -64,6 +67,14 @@ TEST_F(WatchedRenderTest, ReadsLightAndRays) {
   ASSERT_EQ(picture->elements.height(), 2);
   EXPECT_FLOAT_EQ(picture->elements.at(1, 1, 0), 2.5f);
   EXPECT_FLOAT_EQ(picture->elements.at(1, 1, 1), 2.5f);
+  EXPECT_FLOAT_EQ(picture->elements.at(1, 1, 3), 5.0f);
+}
+
+TEST_F(WatchedRenderTest, FramesOfEarlierBuildsTellTheirRays) {
+  Write("frame_0001.exr", kLayeredCountChannels);
+  const auto picture = ReadGrowingPicture(folder_ / "frame_0001.exr", 3);
+  ASSERT_TRUE(picture) << picture.error().message;
+  EXPECT_TRUE(picture->has_rays);
   EXPECT_FLOAT_EQ(picture->elements.at(1, 1, 3), 5.0f);
 }
 

@@ -127,7 +127,7 @@ def fault_of_light(seen, direct, decibels, percent):
     for name, value in direct.items():
         if isinstance(value, (int, float)) and seen.get(name) != value:
             return f"{name}: {seen.get(name)}, not {value}"
-    frames = sorted(name[:-2] for name in direct if name.endswith(".R") and not name.endswith(".count.R"))
+    frames = sorted(name[:-2] for name in direct if name.endswith(".R"))
     if not frames:
         return "the direct way shows no light"
     for frame in frames:

@@ -77,7 +77,7 @@ class FocusThroughTest(ProgramTestCase):
                     self.assertIn("no LF camera", result.stderr)
                     continue
                 channels = channels_of(self.folder / "one.exr")
-                pictures.append(np.where(channels["count.R"][..., None] > 0, rgb(channels), np.nan))
+                pictures.append(np.where(channels["count_red"][..., None] > 0, rgb(channels), np.nan))
             values = np.array(pictures)
             seen = np.isfinite(values[..., 0]).sum(0)
             self.assertGreater(seen.max(), 20)
@@ -85,7 +85,7 @@ class FocusThroughTest(ProgramTestCase):
                 trim = ["--trim", 0.2] if name == "trimmed" else []
                 found = self.through(f"{bool(more)}{name}.exr", "--filter", "nearest", "--statistic", name, *trim,
                                      path=path)
-                np.testing.assert_array_equal(found["count.G"], seen)
+                np.testing.assert_array_equal(found["count_green"], seen)
                 for y, x in np.argwhere(seen > 0):
                     rays = np.sort(values[np.isfinite(values[:, y, x, 0]), y, x], 0)
                     expected, got = statistic(rays), rgb(found)[y, x]
@@ -100,7 +100,7 @@ class FocusThroughTest(ProgramTestCase):
                 self.succeeds(RENDERER, self.field, self.path, "-o", self.folder / name, "--lens-weights", "none",
                               "--filter", name, "--format", "exr-float")
                 frame = channels_of(self.folder / name / "frame_0001.exr")
-                for channel in ("R", "G", "B", "count.R", "coverage"):
+                for channel in ("R", "G", "B", "count_red", "coverage"):
                     np.testing.assert_array_equal(mean[channel], frame[channel])
 
     def test_statistics_are_in_order(self):

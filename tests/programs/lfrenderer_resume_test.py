@@ -448,6 +448,19 @@ class ResumeTest(unittest.TestCase):
         self.fails(2, ["report.json", "back_end fast, this call has reference"], "complete", *choices,
                    "--back-end", "reference")
 
+    def test_frames_of_earlier_builds_are_not_mixed_with_frames_of_other_channel_names(self):
+        """Earlier builds wrote count.R in place of count_red, and recorded no names of channels."""
+        self.finish("earlier", "--frames", "1-2")
+        report = self.folder / "earlier" / "report.json"
+        facts = json.loads(report.read_text())
+        self.assertEqual(facts["inputs"].pop("picture.channels"), "all, with count_red")
+        report.write_text(json.dumps(facts))
+        before = digests(self.folder / "earlier")
+        for words in (["--frames", "1-3", "--resume"], ["--frames", "3"]):
+            self.fails(2, ["no picture.channels, this call has picture.channels all, with count_red", "--overwrite"],
+                       "earlier", *words)
+        self.assertEqual(digests(self.folder / "earlier"), before)
+
     def test_a_damaged_state_is_a_clear_error(self):
         self.begun("damaged")
         plate = sorted(self.partial("damaged").glob("*.plate"))[0]

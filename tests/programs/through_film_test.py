@@ -94,7 +94,7 @@ class ThroughFilmTest(ProgramTestCase):
         self.assertEqual([frame["frame"] for frame in report["frames"]], [1, 2, 3])
         self.assertEqual(report["inputs"]["statistic"], "trimmed")
         self.assertGreater(report["frames"][0]["lf_images"], 20)
-        for frame, values in zip(report["frames"], (channels_of(out / name)["count.G"] for name in frames)):
+        for frame, values in zip(report["frames"], (channels_of(out / name)["count_green"] for name in frames)):
             self.assertEqual(frame["rays_per_element_median"][1], np.sort(values.ravel())[values.size // 2])
 
     def test_frames_and_formats_are_chosen_as_for_a_render(self):
@@ -185,7 +185,7 @@ class ThroughFilmTest(ProgramTestCase):
             self.assertEqual(ours["lf_images"], theirs["lf_images"])
         for name in self.frames_of(few):
             ours, theirs = channels_of(few / name), channels_of(rendered / name)
-            for channel in ("R", "G", "B", "count.R"):
+            for channel in ("R", "G", "B", "count_red"):
                 np.testing.assert_array_equal(ours[channel], theirs[channel])
         self.assertEqual(self.frames_of(few)["frame_0002.exr"],
                          self.single(path, 2, "--max-images", 9, "--statistic", "mean", "--format", "exr-float"))
@@ -250,7 +250,7 @@ class ThroughFilmTest(ProgramTestCase):
         self.succeeds(RENDERER, self.field, path, "-o", rendered, "--lens-weights", "none", "--format", "exr-float")
         for n in (1, 2, 3):
             ours, theirs = (channels_of(folder / f"frame_000{n}.exr") for folder in (mean, rendered))
-            for channel in ("R", "G", "B", "count.R"):
+            for channel in ("R", "G", "B", "count_red"):
                 np.testing.assert_array_equal(ours[channel], theirs[channel])
         many, _ = self.film("many", path)
         few, _ = self.film("few", path, "--threads", 1, "--memory", "64M")
@@ -308,13 +308,13 @@ class ThroughFilmTest(ProgramTestCase):
                 self.succeeds(RENDERER, field, path, "-o", rendered, "--lens-weights", "none", "--format", "exr-float")
                 mean, median, theirs = (channels_of(self.folder / f"{name}-{kind}/frame_0001.exr")
                                         for kind in ("mean", "median", "rendered"))
-                for channel in ("R", "G", "B", "count.R"):
+                for channel in ("R", "G", "B", "count_red"):
                     np.testing.assert_array_equal(mean[channel], theirs[channel])
-                np.testing.assert_array_equal(median["count.R"], mean["count.R"])
+                np.testing.assert_array_equal(median["count_red"], mean["count_red"])
                 self.assertFalse(np.array_equal(median["G"], mean["G"]))
                 plain = channels_of(self.film(f"{name}-plain", self.path(frames=1), "--statistic", "mean")[0] /
                                     "frame_0001.exr")
-                self.assertFalse(np.array_equal(plain["count.R"], mean["count.R"]))
+                self.assertFalse(np.array_equal(plain["count_red"], mean["count_red"]))
 
     def test_grey_values_of_sixteen_bits_are_kept(self):
         # A thermal camera writes TIFF files of one channel and 16 bits, whose values are linear. All LF images show
@@ -366,8 +366,8 @@ class ThroughFilmTest(ProgramTestCase):
     def test_frames_beside_the_capture_are_black_unless_all_are(self):
         path = self.path(start=-9)
         out, _ = self.film("film", path)
-        self.assertEqual(channels_of(out / "frame_0001.exr")["count.R"].max(), 0)
-        self.assertGreater(channels_of(out / "frame_0003.exr")["count.R"].max(), 5)
+        self.assertEqual(channels_of(out / "frame_0001.exr")["count_red"].max(), 0)
+        self.assertGreater(channels_of(out / "frame_0003.exr")["count_red"].max(), 5)
         self.fails(3, ["no LF image contributes"], FOCUS, "through", self.field, path, "-o", self.folder / "black",
                    "--frames", 1)
         self.assertEqual(list((self.folder / "black").glob("*")), [])

@@ -98,9 +98,7 @@ Result<void> WriteExrFrame(const std::filesystem::path& path, const DevelopedFra
   for (const auto& [name, channel] : {std::pair("R", 0), std::pair("G", 1), std::pair("B", 2)})
     channels.push_back({name, frame.rgb.view(), channel, as_half});
   if (!frame.opacity.empty()) channels.push_back({"A", frame.opacity.view(), 0, as_half});
-  for (const auto& [name, channel] :
-       {std::pair("count.R", 0), std::pair("count.G", 1), std::pair("count.B", 2)})
-    channels.push_back({name, frame.ray_count.view(), channel});
+  for (int c = 0; c < 3; ++c) channels.push_back({kCountChannels[c], frame.ray_count.view(), c});
   channels.push_back({"coverage", frame.coverage.view(), 0, as_half});
   if (!frame.effective_count.empty())
     channels.push_back({"effective", frame.effective_count.view(), 0, as_half});

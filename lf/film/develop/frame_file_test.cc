@@ -49,8 +49,8 @@ TEST_F(FrameFileTest, ExrHoldsColoursCountsAndCoverage) {
     const ImageFileInfo info = ReadImageInfo(path).value();
     ASSERT_EQ(info.channels, 7);
     const auto read = std::get<Image<float>>(ReadImage(path).value());
-    const int count[] = {ChannelNamed(info, "count.R"), ChannelNamed(info, "count.G"),
-                         ChannelNamed(info, "count.B")};
+    const int count[] = {ChannelNamed(info, "count_red"), ChannelNamed(info, "count_green"),
+                         ChannelNamed(info, "count_blue")};
     const int coverage = ChannelNamed(info, "coverage");
     const float tolerance = format == FrameFormat::kExrFloat ? 0 : 1.0f / 2048;
     for (int y = 0; y < 6; ++y)

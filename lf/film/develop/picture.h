@@ -2,6 +2,7 @@
 // The picture of a frame in memory, and how its file shows it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -48,10 +49,19 @@ struct DevelopedFrame {
   Image<float> focus_depth_w = {};
 };
 
+// The channels of EXR frames that hold the numbers of rays of R, G and B. No name has a dot, which
+// would make it a channel of a layer: Blender's sequencer shows no file that has layers. No name
+// ends in r, g, b or a, because Blender looks for colours by the last letter of a name.
+inline constexpr std::array<const char*, 3> kCountChannels = {"count_red", "count_green",
+                                                              "count_blue"};
+// Their names in frames of earlier builds, which are still read.
+inline constexpr std::array<const char*, 3> kLayeredCountChannels = {"count.R", "count.G",
+                                                                     "count.B"};
+
 // The format of the file of a frame.
 enum class FrameFormat {
-  // "exr": an EXR file with the channels R G B count.R count.G count.B coverage. Opacities add A,
-  // by which R G B are multiplied; lens weights add the channel effective, rebinned rays add
+  // "exr": an EXR file with the channels R G B, kCountChannels and coverage. Opacities add A, by
+  // which R G B are multiplied; lens weights add the channel effective, rebinned rays add
   // interpolated, guarded plates add densified and trust, and focus depths add Z. Counts are 32-bit
   // integers, Z is float, and all other channels are half.
   kExrHalf,

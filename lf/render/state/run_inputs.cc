@@ -157,6 +157,9 @@ RunInputs InputsOfPicture(const RunChoices& choices) {
   RunInputs inputs = {{"picture.format", choices.format}};
   for (auto& setting : TextsOf(choices.film, SettingRole::kPicture))
     inputs.push_back(std::move(setting));
+  // Frames of earlier builds, which lack this input, have other names of channels.
+  if (const auto format = ParseFrameFormat(choices.format); format && IsExr(*format))
+    inputs.emplace_back("picture.channels", fmt::format("all, with {}", kCountChannels[0]));
   if (choices.film.adds_opacity) inputs.emplace_back("picture.alpha", "on");
   if (choices.look.colours != ColourSpace::kRec709)
     inputs.emplace_back("picture.colour_space", NameOf(choices.look.colours));

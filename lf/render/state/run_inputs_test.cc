@@ -42,6 +42,20 @@ TEST(RunInputs, AnotherShutterIsAnotherInput) {
   }
 }
 
+TEST(RunInputs, ExrFramesAloneHaveNamesOfChannels) {
+  const auto has_names = [](const std::string& format) {
+    RunChoices choices;
+    choices.format = format;
+    const RunInputs inputs = InputsOfPicture(choices);
+    return std::any_of(inputs.begin(), inputs.end(),
+                       [](const auto& input) { return input.first == "picture.channels"; });
+  };
+  EXPECT_TRUE(has_names("exr"));
+  EXPECT_TRUE(has_names("exr-float"));
+  EXPECT_FALSE(has_names("png"));
+  EXPECT_FALSE(has_names("png16"));
+}
+
 TEST(RunInputs, EveryInputMakesADifferenceAndItsKeyNamesIt) {
   struct Inputs {
     Inputs() { choices.film.reading.estimator = Estimator::kBilinear; }
