@@ -13,6 +13,7 @@ from . import exr
 from . import rig as rigs
 from . import scene_camera
 from .calibration import transforms_json
+from .curves import fcurves_of
 from .errors import InputError, OutputError
 
 SENSOR_MM = 36  # sensor width of the LF camera, whose focal length follows
@@ -170,9 +171,7 @@ def changed(scene, wanted):
     """Changes attributes, (owner, name, value) each, and restores them at the end. Mutes what animates the scene's
     settings: a driver would set the seed again before each render."""
     animation = scene.animation_data
-    curves = []
-    if animation:
-        curves = [*animation.drivers, *getattr(animation.action, "fcurves", ())]
+    curves = [*animation.drivers, *fcurves_of(animation)] if animation else []
     wanted = [(curve, "mute", True) for curve in curves] + list(wanted)
     before = [(owner, name, getattr(owner, name)) for owner, name, _ in wanted]
     try:

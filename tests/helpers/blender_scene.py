@@ -6,10 +6,14 @@ usage: blender -b --factory-startup --python blender_scene.py -- JOB JSON     JS
 """
 import json
 import math
+import pathlib
 import sys
 
 import bpy
 import mathutils
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "blender" / "lfrendertools_blender"))
+from curves import fcurves_of
 
 DEPTH_OF_DOTS = 4.0
 
@@ -176,10 +180,18 @@ def chan(file, path, order, size, frames):
     bpy.context.view_layer.objects.active = camera
     words = {"rotation_order": order, "filepath": path}
     bpy.ops.import_scene.import_chan(**words, z_up=False, sensor_width=36, sensor_height=36 * size[1] / size[0])
-    for curve in [*camera.animation_data.action.fcurves, *camera.data.animation_data.action.fcurves]:
+    for curve in [*fcurves_of(camera.animation_data), *fcurves_of(camera.data.animation_data)]:
         assert len(curve.keyframe_points) == frames, curve.data_path
     words["filepath"] += ".again"
     bpy.ops.export.export_chan(**words, y_up=False, check_existing=False)
+    bpy.ops.wm.save_as_mainfile(filepath=file)
+
+
+def plain(file, size, frames):
+    """A scene with Blender's usual camera, which stands still."""
+    scene, camera = empty_scene(*size, 1)
+    scene.frame_end = frames
+    camera.data.dof.focus_distance = 4
     bpy.ops.wm.save_as_mainfile(filepath=file)
 
 
@@ -224,6 +236,57 @@ def cameras(file, output):
                        "rotation": field.aperture_rotation, "ratio": field.aperture_ratio})
     with open(output, "w") as stream:
         json.dump(result, stream)
+
+
+def shown(files, folder):
+    """Writes what Blender shows of pictures in three ways: as image N_image.exr, in the sequencer N_sequencer.exr and
+    in the compositor N_compositor.exr. N counts the pictures from 0."""
+    for number, file in enumerate(files):
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        scene = bpy.context.scene
+        image = bpy.data.images.load(file)
+        assert list(image.size) != [0, 0] and len(image.pixels), f"{file}: is empty as an image"
+        scene.render.resolution_x, scene.render.resolution_y = image.size
+        scene.render.resolution_percentage = 100
+        scene.frame_start = scene.frame_end = 1
+        scene.view_settings.view_transform = "Raw"
+        settings = scene.render.image_settings
+        settings.file_format, settings.color_mode, settings.color_depth = "OPEN_EXR", "RGB", "32"
+        copy = bpy.data.images.new("copy", *image.size, alpha=True, float_buffer=True)
+        copy.pixels = image.pixels[:]
+        copy.file_format = "OPEN_EXR"
+        copy.save_render(f"{folder}/{number}_image.exr", scene=scene)
+        strips_of(scene.sequence_editor_create()).new_image("frames", file, 1, 1)
+        scene.render.filepath = f"{folder}/{number}_sequencer.exr"
+        bpy.ops.render.render(write_still=True)
+        scene.sequence_editor_clear()
+        compose(scene, image)
+        scene.render.filepath = f"{folder}/{number}_compositor.exr"
+        bpy.ops.render.render(write_still=True)
+
+
+def strips_of(editor):
+    """Returns the strips of a sequence editor; before Blender 4.4, they are called sequences."""
+    return editor.strips if hasattr(editor, "strips") else editor.sequences
+
+
+def compose(scene, image):
+    """Makes the compositor show an image. A scene needs a camera, although nothing of it is seen."""
+    if hasattr(scene, "compositing_node_group"):  # Blender 5
+        tree = bpy.data.node_groups.new("compositor", "CompositorNodeTree")
+        tree.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
+        scene.compositing_node_group = tree
+        result = tree.nodes.new("NodeGroupOutput")
+    else:
+        scene.use_nodes = True
+        tree = scene.node_tree
+        tree.nodes.clear()
+        result = tree.nodes.new("CompositorNodeComposite")
+    source = tree.nodes.new("CompositorNodeImage")
+    source.image = image
+    tree.links.new(source.outputs[0], result.inputs[0])
+    scene.camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
+    scene.collection.objects.link(scene.camera)
 
 
 job, arguments = sys.argv[sys.argv.index("--") + 1:]

@@ -20,13 +20,12 @@ os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"
 import cv2
 import numpy as np
 
+from blender_run import BLENDER, ROOT, addon, command, scene_of
 from program_test_case import ProgramTestCase, wait_until
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "blender" / "lfrendertools_blender"))
 import rig
 
-BLENDER = shutil.which("blender")
 RENDERER = CAMMVMINFO = LFPATH = None
 # Least quality of frames 1 and 5 of the scene "shop". With a lens that is turned by half a blade they have 42.2, 37.3.
 TRUE_DB = {1: 43, 5: 47}
@@ -50,28 +49,6 @@ ODD_CAMERAS = {
     "dome": (dict(size=UPRIGHT, shift=(0.1, 0.1)), "--rig dome --angle 20 10"),
 }
 ALLOWED_PX = 0.05
-
-
-def scene_of(job, **arguments):
-    """Runs a job of blender_scene.py."""
-    result = subprocess.run([BLENDER, "-b", "--factory-startup", "--python",
-                             ROOT / "tests/helpers/blender_scene.py", "--",
-                             job, json.dumps(arguments)], capture_output=True, text=True, timeout=800)
-    if result.returncode:
-        raise RuntimeError(result.stderr)
-
-
-def command(scene, *words):
-    return [BLENDER, "-b", scene, "--python", ROOT / "blender" / "headless.py", "--", "lfrendertools",
-            *map(str, words)]
-
-
-def addon(scene, *words, code=0):
-    """Runs a command of the add-on, which must end with this code. Returns what it says."""
-    result = subprocess.run(command(scene, *words), capture_output=True, text=True, timeout=800)
-    if result.returncode != code:
-        raise AssertionError(f"exit code {result.returncode}: {result.stderr}")
-    return result.stderr
 
 
 def picture(file):
