@@ -175,7 +175,7 @@ Result<LensStatisticOptions> OptionsOf(const Arguments& a, const CommonOptions& 
   if (a.max_angle_deg > 0) options.max_angle_rad = RadiansFromDegrees(a.max_angle_deg);
   LF_ASSIGN_OR_RETURN(options.memory_bytes, ParseByteSize(a.memory, "--memory"));
   options.strict = common.strict;
-  options.adds_opacity = a.picture.alpha;
+  options.adds_opacity = a.picture.HasAlpha();
   return options;
 }
 

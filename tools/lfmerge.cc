@@ -100,7 +100,7 @@ int main(int argc, char** argv) {
     options.output_folder = arguments.output;
     options.kept_files = LfImagesIn(arguments.output);
     options.format = *lf::ParseFrameFormat(arguments.format);
-    options.adds_opacity = arguments.picture.alpha;
+    options.adds_opacity = arguments.picture.HasAlpha();
     LF_ASSIGN_OR_RETURN(options.picture, arguments.picture.Make(options.format));
     if (!arguments.video.empty()) options.video = arguments.video;
     options.contact_sheet = !arguments.no_contact_sheet;

@@ -255,7 +255,7 @@ Result<FilmSettings> RenderArguments::MakeFilm(uint64_t seed) const {
   LF_RETURN_IF_ERROR(settings.Set(&film));
   film.seed = seed;
   film.guard = !no_guard;
-  film.adds_opacity = picture.alpha;
+  film.adds_opacity = picture.HasAlpha();
   if (film.mode != RenderMode::kRebin && film.lens_weights == LensWeights::kAuto &&
       film.CountsRays())
     LogInfo(

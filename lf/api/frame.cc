@@ -102,6 +102,10 @@ Result<void> SaveFrame(const Frame& frame, const std::filesystem::path& file,
   if (frame.notes == nullptr)
     return UsageError(fmt::format(
         "{}: the frame has no notes, because RenderFrame() did not make it", file.string()));
+  if (picture.channels == FrameChannels::kRgba && frame.picture.opacity.empty())
+    return UsageError(fmt::format(
+        "{}: the frame has no alpha: set FilmSettings::adds_opacity before it is rendered",
+        file.string()));
   return WritePicture(*frame.notes, frame.picture, file, *format, picture, {});
 }
 

@@ -90,7 +90,8 @@ class FrameRenderer {
 //   format   unset: "exr" or "png", by the suffix of `file`
 //   picture  how the file shows the picture (film/develop/picture.h)
 // kUsage: the suffix is neither .exr nor .png, or is that of another format; the frame has no
-// notes. kOutput: the folder or the disk cannot be written.
+// notes, or no opacities for FrameChannels::kRgba. kOutput: the folder or the disk cannot be
+// written.
 Result<void> SaveFrame(const Frame& frame, const std::filesystem::path& file,
                        std::optional<FrameFormat> format = {}, const PictureOptions& picture = {});
 

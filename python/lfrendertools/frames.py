@@ -101,7 +101,7 @@ class Frame:
         return display_values(self.rgb)
 
     def save(self, path: FilePath, format: Optional[str] = None, *, colour_space: str = "rec709",
-             alpha: bool = False) -> None:
+             alpha: bool = False, channels: str = "all", exr_compression: str = "zip") -> None:
         """Write the frame as `lfrenderer` does: EXR with linear light and all other channels, or PNG for display.
 
         Parameters
@@ -118,11 +118,17 @@ class Frame:
             True: the file has alpha, as by `--frame-alpha`: 1 where light was recorded, filled or interpolated, and
             0 elsewhere. Colours are multiplied by it in EXR files, and are not in PNG files. A frame that has
             `opacity` keeps it in any case. Default False.
+        channels : {"all", "rgba", "rgb"}
+            Channels of an EXR file, as by `--channels` of `lfrenderer`: "rgba" has R, G, B and alpha, as `alpha` adds
+            it; "rgb" has R, G and B. Default "all", the only one for PNG files.
+        exr_compression : {"zip", "zips"}
+            Compression of an EXR file: 16 rows together, or each row by itself. Neither loses anything. Default "zip",
+            the only one for PNG files.
 
         Raises
         ------
         UsageError
-            The name, the format or the colour space is none of these, or a PNG file was to have other primaries.
+            The name, the format or another text is none of these, or a PNG file was to have what only EXR files have.
         OutputError
             The file cannot be written.
         """
@@ -134,7 +140,8 @@ class Frame:
             raise UsageError(f"{name}: expected a name that ends in {ends}" if ends else
                              f"format={format!r}: expected exr, exr-float, png or png16")
         self._core.save(os.fsencode(name), chosen, arguments.text("colour_space", colour_space),
-                        arguments.flag("alpha", alpha))
+                        arguments.flag("alpha", alpha), arguments.text("channels", channels),
+                        arguments.text("exr_compression", exr_compression))
 
     def _repr_png_(self) -> bytes:
         return _core.encode_png(self.display())

@@ -52,6 +52,15 @@ ImageMetadata MetadataOf(const Frame& frame) {
                   frame);
 }
 
+// Returns the value that a text names. Throws a Failure (kUsage), which names what was expected.
+template <class Value>
+Value Named(const char* argument, const std::string& text, const std::optional<Value>& value,
+            const char* expected) {
+  if (!value)
+    throw Failure(UsageError(fmt::format("{}=\"{}\": expected {}", argument, text, expected)));
+  return *value;
+}
+
 // Returns the picture with the alpha and the primaries that a file gets.
 DevelopedFrame PictureFor(const Frame& frame, ColourSpace colours, bool alpha) {
   DevelopedFrame picture = frame.picture;
@@ -64,27 +73,45 @@ DevelopedFrame PictureFor(const Frame& frame, ColourSpace colours, bool alpha) {
   return picture;
 }
 
+// Throws a Failure (kUsage) if an argument has no meaning for a PNG file.
+void RefuseForPng(const std::string& argument, const std::string& value,
+                  const std::string& format) {
+  throw Failure(UsageError(
+      fmt::format("{}=\"{}\": cannot be used with format=\"{}\", because PNG frames are sRGB "
+                  "pictures for display: leave it out, or save an EXR file",
+                  argument, value, format)));
+}
+
 void SaveFrame(const Frame& frame, const std::string& path, const std::string& format,
-               const std::string& colour_space, bool alpha) {
-  const std::optional<FrameFormat> known = ParseFrameFormat(format);
-  if (!known)
+               const std::string& colour_space, bool alpha, const std::string& channels,
+               const std::string& compression) {
+  const auto known =
+      Named("format", format, ParseFrameFormat(format), "exr, exr-float, png or png16");
+  PictureOptions options;
+  options.colours = Named("colour_space", colour_space, ParseColourSpace(colour_space),
+                          "rec709, rec2020 or acescg");
+  options.channels = Named("channels", channels, ParseFrameChannels(channels), "all, rgba or rgb");
+  options.compression =
+      Named("exr_compression", compression, ParseExrCompression(compression), "zip or zips");
+  if (!IsExr(known)) {
+    if (options.colours != ColourSpace::kRec709) RefuseForPng("colour_space", colour_space, format);
+    if (options.channels != FrameChannels::kAll) RefuseForPng("channels", channels, format);
+    if (options.compression != ExrCompression::kZip)
+      RefuseForPng("exr_compression", compression, format);
+  }
+  if (alpha && options.channels == FrameChannels::kRgb)
     throw Failure(
-        UsageError(fmt::format("format=\"{}\": expected exr, exr-float, png or png16", format)));
-  const std::optional<ColourSpace> colours = ParseColourSpace(colour_space);
-  if (!colours)
-    throw Failure(UsageError(
-        fmt::format("colour_space=\"{}\": expected rec709, rec2020 or acescg", colour_space)));
-  if (!IsExr(*known) && *colours != ColourSpace::kRec709)
-    throw Failure(UsageError(fmt::format(
-        "colour_space=\"{}\": cannot be used with format=\"{}\", because PNG frames are sRGB "
-        "pictures for display: leave it out, or save an EXR file",
-        colour_space, format)));
+        UsageError("channels=\"rgb\": cannot be used with alpha=True, which adds a channel: use "
+                   "channels=\"rgba\", or leave alpha out"));
+  const bool has_alpha = alpha || options.channels == FrameChannels::kRgba;
   RunWithoutGil([&] {
-    const ImageMetadata metadata = WithMore(FileMetadata(frame.notes, *known, *colours), frame);
-    if (alpha || *colours != ColourSpace::kRec709)
-      Take(WriteFrame(path, PictureFor(frame, *colours, alpha), *known, metadata));
+    const ImageMetadata metadata =
+        WithMore(FileMetadata(frame.notes, known, options.colours), frame);
+    if (has_alpha || options.colours != ColourSpace::kRec709)
+      Take(WriteFrame(path, PictureFor(frame, options.colours, has_alpha), known, metadata, {},
+                      options));
     else
-      Take(WriteFrame(path, frame.picture, *known, metadata));
+      Take(WriteFrame(path, frame.picture, known, metadata, {}, options));
   });
 }
 

@@ -85,10 +85,11 @@ def test_saved_alpha_and_primaries_have_the_bytes_of_lfrenderer(way, field, path
     frame = pickle.loads(pickle.dumps(lf.render(field, path, **options)))
     light = frame.rgb.copy()
     saves = [("exr", {"colour_space": "acescg", "alpha": True}), ("exr-float", {"colour_space": "rec2020"}),
-             ("exr", {"alpha": True}), ("png16", {"alpha": True}), ("png", {"colour_space": "rec709"})]
+             ("exr", {"alpha": True}), ("png16", {"alpha": True}), ("png", {"colour_space": "rec709"}),
+             ("exr", {"channels": "rgba", "exr_compression": "zips"}), ("exr", {"channels": "rgb"})]
     for number, (format, more) in enumerate(saves):
         words = [word for name, value in more.items()
-                 for word in (["--frame-alpha"] if name == "alpha" else ["--colour-space", value])]
+                 for word in (["--frame-alpha"] if name == "alpha" else [f"--{name.replace('_', '-')}", value])]
         run("lfrenderer", capture, path_file, "-o", tmp_path / str(number), "--frames", 1, "--format", format,
             *words_of(options), *words)
         file = tmp_path / f"frame_0001.{format[:3]}"
@@ -138,6 +139,14 @@ def test_wrong_alpha_and_primaries_are_refused(field, path, tmp_path):
         frame.save(tmp_path / "a.png", colour_space="acescg")
     with pytest.raises(lf.UsageError, match="colour_space=\"srgb\": expected rec709, rec2020 or acescg"):
         frame.save(tmp_path / "a.exr", colour_space="srgb")
+    for word in ({"channels": "rgb"}, {"exr_compression": "zips"}):
+        name, = word
+        with pytest.raises(lf.UsageError, match=f"{name}=.*format=\"png16\".*EXR"):
+            frame.save(tmp_path / "a.png", "png16", **word)
+        with pytest.raises(lf.UsageError, match=f"{name}=\"best\": expected "):
+            frame.save(tmp_path / "a.exr", **{name: "best"})
+    with pytest.raises(lf.UsageError, match="channels=\"rgb\".*alpha=True.*channels=\"rgba\""):
+        frame.save(tmp_path / "a.exr", channels="rgb", alpha=True)
     with pytest.raises(TypeError, match="colour_space=None: expected a string"):
         frame.save(tmp_path / "a.exr", colour_space=None)
     with pytest.raises(TypeError, match="alpha='yes': expected True or False"):

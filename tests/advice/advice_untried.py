@@ -47,6 +47,7 @@ UNTRIED = {
     "rig: give 1 or more (--count)": BEFORE,
     "rig: expected a share of the camera spacing from 0 to 1": BEFORE,
     "merge_shards: no plates are given": BEFORE,
+    "check_render_options: needs frames with alpha: add {frame_alpha}": BEFORE,
     "statistic_film: divide the frames with --frames or packages": BEFORE,
     "statistic_film: leave them out, or take fewer LF images with --max-images": BEFORE,
     "statistic_film: rebinned rays are interpolated": BEFORE,

@@ -6,7 +6,7 @@ import zlib
 
 import numpy as np
 
-BLOCK_ROWS = 16  # rows that are compressed together
+BLOCK_ROWS = {2: 1, 3: 16}  # rows that are compressed together, by the compression: zips, zip
 PIXEL_TYPES = [np.dtype("<u4"), np.dtype("<f2"), np.dtype("<f4")]
 
 # Formats of attribute values by type; other types, such as channel lists, stay bytes.
@@ -35,7 +35,7 @@ def read_header(data, at=8):
 
 
 def channels_of(path):
-    """Returns {name: array [height][width]} of a file of rows that are compressed by zip."""
+    """Returns {name: array [height][width]} of a file of rows that are compressed by zip or zips."""
     data = path.read_bytes()
     header, at = read_header(data)
     return _channels(data, header, at, 0)
@@ -60,17 +60,17 @@ def parts_of(path):
 
 def _channels(data, header, at, extra):
     """Returns the channels of a part whose table of blocks begins at a byte. Each block begins with `extra` bytes."""
-    assert header["compression"][1] == 3, "expected zip compression"
+    block_rows = BLOCK_ROWS[header["compression"][1]]
     left, top, right, bottom = header["dataWindow"][1]
     width, height = right - left + 1, bottom - top + 1
     types = _channel_types(header["channels"][1])
     row = np.dtype([(name, kind, width) for name, kind in types.items()])
     rows = np.empty(height, row)
-    for block, offset in enumerate(np.frombuffer(data, "<u8", -(-height // BLOCK_ROWS), at)):
+    for block, offset in enumerate(np.frombuffer(data, "<u8", -(-height // block_rows), at)):
         pixels = int(offset) + extra + 8
         begin, size = struct.unpack_from("<ii", data, pixels - 8)
-        assert begin - top == block * BLOCK_ROWS
-        count = min(BLOCK_ROWS, height - block * BLOCK_ROWS)
+        assert begin - top == block * block_rows
+        count = min(block_rows, height - block * block_rows)
         packed = data[pixels:pixels + size]
         rows[begin - top:begin - top + count] = np.frombuffer(
             packed if size == count * row.itemsize else _unpacked(packed), row)

@@ -88,8 +88,9 @@ READ_AS = {
 
 # Options of the group Output that take no file. Options of TRIED change what is written, and are in the name of a
 # writer or reader; options of OTHERS choose how much is written, or are tried in other ways.
-TRIED = ("--format", "--values", "--colour-space", "--frame-alpha", "--z", "--keep-plates", "--stereo", "--quilt",
-         "--frames", "--text", "--plan", "--fill", "--views", "--layout", "--json", "--convergence", "--view-angle")
+TRIED = ("--format", "--values", "--colour-space", "--frame-alpha", "--z", "--channels", "--exr-compression",
+         "--keep-plates", "--stereo", "--quilt", "--frames", "--text", "--plan", "--fill", "--views", "--layout",
+         "--json", "--convergence", "--view-angle")
 OTHERS = ("--calibration-only", "--overwrite", "--force", "--clip", "--scale", "--unit-m", "--distance", "--frame",
           "--csv", "--fps", "--stereo-mm", "--clamp-frames", "--packages", "--frames-per-package", "--balance",
           "--shard-size", "--view", "--display", "--no-contact-sheet", "--back-and-forth", "--show", "--gain",

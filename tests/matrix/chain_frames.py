@@ -100,6 +100,9 @@ class FrameChains:
     def pictures_acescg(self, flaws):
         return self.frames(flaws, "--format", "exr-float", *COMPOSITING)
 
+    def pictures_rgb(self, flaws):
+        return self.frames(flaws, "--format", "exr", "--channels", "rgb", "--exr-compression", "zips")
+
     def pictures_png(self, flaws):
         return self.frames(flaws, "--format", "png")
 

@@ -101,6 +101,7 @@ PICTURE_WRITERS = {
     "lfrenderer": "pictures_exr",
     "lfrenderer --format exr-float": "pictures_float",
     "lfrenderer --colour-space --frame-alpha --z": "pictures_acescg",
+    "lfrenderer --channels rgb --exr-compression zips": "pictures_rgb",
     "lfrenderer --format png": "pictures_png",
     "lfrenderer --format png16 --frame-alpha": "pictures_png16",
     "lfmerge": "pictures_merged",

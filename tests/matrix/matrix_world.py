@@ -29,11 +29,12 @@ MODES = {
     "bicubic": ["--filter", "bicubic"],
     "unguarded": ["--no-guard"],
     "compositing": ["--colour-space", "acescg", "--frame-alpha", "--z"],
+    "few channels": ["--channels", "rgba", "--exr-compression", "zips"],
     "rebin": ["--mode", "rebin", "--max-rays", MOST_RAYS],
     "hybrid": ["--mode", "hybrid", "--max-rays", MOST_RAYS],
     "hybrid none": ["--mode", "hybrid", "--lens-weights", "none", "--max-rays", MOST_RAYS],
 }
-OF_FILES = ("compositing",)  # modes whose options change the files of frames, not their rays
+OF_FILES = ("compositing", "few channels")  # modes whose options change the files of frames, not their rays
 # The pictures of the LF images do not fit one another, so that the depths are arbitrary; they are the same each time.
 DENSIFY = ["--depths", 0.3, 20, "--most", 100, "--force"]
 BROKEN, MISSING, MASKED, BRIGHTER = 83, 97, (70, 86), 85  # LF images with flaws, near the middle

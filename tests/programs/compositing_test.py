@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests what compositing programs read of frames: attributes of EXR files, --colour-space, --frame-alpha and --z.
-Places, colours and depths are compared with formulas of the OpenEXR documentation and of the standards, in NumPy.
+"""Tests what compositing programs read of frames: attributes of EXR files, --colour-space, --frame-alpha, --z,
+--channels and --exr-compression. Places, colours and depths are compared with formulas of the OpenEXR documentation and
+of the standards, in NumPy.
 
 usage: compositing_test.py LFSYNTH LFRENDERER LFMERGE LFPREPROCESSOR
 """
@@ -210,11 +211,32 @@ class CompositingTest(ProgramTestCase):
         self.fails(2, ["picture.z"], *start, "--frame-alpha", "--colour-space", "acescg")
         self.assertEqual(digests(out), plain)
 
+    def test_frames_of_fewer_channels_hold_the_same_light(self):
+        whole = channels_of(self.render("whole", "--frames", 1, "--frame-alpha", "--z") / "frame_0001.exr")
+        for name, options, names in (("rgb", [], "RGB"), ("rgba", [], "RGBA"), ("rgb", ["--z"], "RGBZ"),
+                                     ("rgba", ["--frame-alpha", "--z"], "RGBAZ")):
+            for compression, number in (("zip", 3), ("zips", 2)):
+                out = self.folder / "few"
+                self.render("few", "--frames", 1, "--overwrite", "--channels", name, "--exr-compression", compression,
+                            *options)
+                few = channels_of(out / "frame_0001.exr")
+                self.assertEqual(set(few), set(names))
+                for channel in names:
+                    np.testing.assert_array_equal(few[channel], whole[channel])
+                self.assertEqual(attributes_of(out / "frame_0001.exr")["compression"], number)
+        # A film keeps its channels: frames of others are not added to it.
+        for options in (["--channels", "all"], ["--channels", "rgba", "--exr-compression", "zip"]):
+            self.fails(2, ["picture."], RENDERER, self.field, self.path, "-o", self.folder / "few", "--format",
+                       "exr-float", "--frames", 2, "--frame-alpha", "--z", *options)
+
     def test_options_that_a_file_cannot_follow_are_refused(self):
-        for options in (["--z"], ["--colour-space", "acescg"]):
+        self.fails(2, ["--channels rgb", "--frame-alpha", "--channels rgba"], RENDERER, self.field, self.path, "-o",
+                   self.folder / "out", "--channels", "rgb", "--frame-alpha")
+        for options in (["--z"], ["--colour-space", "acescg"], ["--channels", "rgb"], ["--exr-compression", "zips"]):
             self.fails(2, ["--format png16", options[0], "leave one of them out"], RENDERER, self.field, self.path,
                        "-o", self.folder / "out", "--format", "png16", *options)
-        for options in (["--z"], ["--frame-alpha"], ["--colour-space", "acescg"]):
+        for options in (["--z"], ["--frame-alpha"], ["--colour-space", "acescg"], ["--channels", "rgba"],
+                        ["--exr-compression", "zips"]):
             self.fails(2, ["--shard", options[0], "lfmerge"], RENDERER, self.field, self.path, "-o",
                        self.folder / "out", "--shard", "1/2", *options)
         self.fails(2, ["--colour-space", "rec709"], RENDERER, self.field, self.path, "-o", self.folder / "out",

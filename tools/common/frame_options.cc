@@ -7,6 +7,7 @@
 #include "tools/common/validators.h"
 
 #include "lf/core/log.h"
+#include "lf/film/develop/display_view.h"
 #include "lf/film/develop/video.h"
 #include "lf/render/pipeline/frame_range.h"
 
@@ -87,18 +88,49 @@ void PictureArguments::AddTo(OptionGroup& output) {
                  "The channel Z is the depth at which each element is in focus, along the optical "
                  "axis, in world units. It varies if the focus plane is tilted, and is infinite "
                  "where an element does not see the plane.");
+  output.AddChoice("--channels", channels, {"all", "rgba", "rgb"},
+                   "Channels of EXR frames\n"
+                   "all: light, and what is known of each element, such as the number of rays\n"
+                   "rgba: R, G, B and A alone, with alpha as by --frame-alpha\n"
+                   "rgb: R, G and B alone\n"
+                   "--z adds Z to any of them.");
+  output.AddChoice(
+      "--exr-compression", exr_compression, {"zip", "zips"},
+      "Compression of EXR frames, which loses nothing\n"
+      "zip: 16 rows together\n"
+      "zips: each row by itself, for compositing programs that read frames row by row");
   AddViews(output, *this);
 }
+
+namespace {
+
+// kUsage if an option has no meaning for PNG frames.
+Result<void> CheckSuitsPng(const PictureArguments& a, FrameFormat format) {
+  std::string option;
+  if (a.exr_compression != "zip") option = "--exr-compression " + a.exr_compression;
+  if (a.channels != "all") option = "--channels " + a.channels;
+  if (a.colour_space.value_or("rec709") != "rec709") option = "--colour-space " + *a.colour_space;
+  if (a.z) option = "--z";
+  if (option.empty()) return {};
+  return UsageError(fmt::format(
+      "--format {}: cannot be used with {}, because PNG frames are sRGB pictures for display: "
+      "leave one of them out, or use --format exr",
+      NameOf(format), option));
+}
+
+}  // namespace
 
 Result<PictureOptions> PictureArguments::Make(FrameFormat format) const {
   PictureOptions options;
   options.has_focus_depth = z;
   if (colour_space) options.colours = *ParseColourSpace(*colour_space);
-  if (!IsExr(format) && (z || options.colours != ColourSpace::kRec709))
-    return UsageError(fmt::format(
-        "--format {}: cannot be used with {}, because PNG frames are sRGB pictures for display: "
-        "leave one of them out, or use --format exr",
-        NameOf(format), z ? "--z" : "--colour-space " + *colour_space));
+  options.channels = *ParseFrameChannels(channels);
+  options.compression = *ParseExrCompression(exr_compression);
+  if (!IsExr(format)) LF_RETURN_IF_ERROR(CheckSuitsPng(*this, format));
+  if (alpha && options.channels == FrameChannels::kRgb)
+    return UsageError(
+        "--channels rgb: cannot be used with --frame-alpha, which adds a channel: use --channels "
+        "rgba, or leave --frame-alpha out");
   if (view.empty()) return options;
   if (IsExr(format))
     return UsageError(fmt::format(

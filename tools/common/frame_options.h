@@ -43,9 +43,12 @@ void AddFrameFormat(OptionGroup& output, std::string& format);
 struct PictureArguments {
   bool alpha = false, z = false;
   std::optional<std::string> colour_space;
+  std::string channels = "all", exr_compression = "zip";
   std::string view, display;
 
   void AddTo(OptionGroup& output);
+  // True if frames need the alpha that FilmSettings::adds_opacity adds.
+  bool HasAlpha() const { return alpha || channels == "rgba"; }
   // kUsage: an option needs files of another format. Other errors are those of DisplayView::Open().
   Result<PictureOptions> Make(FrameFormat format) const;
 };

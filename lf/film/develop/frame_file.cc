@@ -11,6 +11,7 @@
 #include "lf/core/value_named.h"
 #include "lf/film/develop/display.h"
 #include "lf/film/develop/display_picture.h"
+#include "lf/film/develop/display_view.h"
 
 namespace lf {
 namespace {
@@ -91,25 +92,31 @@ Image<uint8_t> Picture(const Image<T>& image) {
   return picture;
 }
 
+// Adds the channels that describe the elements, such as the numbers of rays.
+void AddFacts(const DevelopedFrame& frame, bool as_half, std::vector<ExrChannel>* channels) {
+  for (int c = 0; c < 3; ++c) channels->push_back({kCountChannels[c], frame.ray_count.view(), c});
+  const std::pair<const char*, const Image<float>&> facts[] = {{"coverage", frame.coverage},
+                                                               {"effective", frame.effective_count},
+                                                               {"interpolated", frame.interpolated},
+                                                               {"densified", frame.densified},
+                                                               {"trust", frame.trust}};
+  for (const auto& [name, values] : facts)
+    if (!values.empty()) channels->push_back({name, values.view(), 0, as_half});
+}
+
 Result<void> WriteExrFrame(const std::filesystem::path& path, const DevelopedFrame& frame,
                            bool as_half, const ImageMetadata& metadata,
-                           const std::function<bool()>& is_interrupted) {
+                           const std::function<bool()>& is_interrupted,
+                           const PictureOptions& options) {
   std::vector<ExrChannel> channels;
   for (const auto& [name, channel] : {std::pair("R", 0), std::pair("G", 1), std::pair("B", 2)})
     channels.push_back({name, frame.rgb.view(), channel, as_half});
-  if (!frame.opacity.empty()) channels.push_back({"A", frame.opacity.view(), 0, as_half});
-  for (int c = 0; c < 3; ++c) channels.push_back({kCountChannels[c], frame.ray_count.view(), c});
-  channels.push_back({"coverage", frame.coverage.view(), 0, as_half});
-  if (!frame.effective_count.empty())
-    channels.push_back({"effective", frame.effective_count.view(), 0, as_half});
-  if (!frame.interpolated.empty())
-    channels.push_back({"interpolated", frame.interpolated.view(), 0, as_half});
-  if (!frame.densified.empty())
-    channels.push_back({"densified", frame.densified.view(), 0, as_half});
-  if (!frame.trust.empty()) channels.push_back({"trust", frame.trust.view(), 0, as_half});
+  if (!frame.opacity.empty() && options.channels != FrameChannels::kRgb)
+    channels.push_back({"A", frame.opacity.view(), 0, as_half});
+  if (options.channels == FrameChannels::kAll) AddFacts(frame, as_half, &channels);
   // Depths are never half, which has only 11 significant bits.
   if (!frame.focus_depth_w.empty()) channels.push_back({"Z", frame.focus_depth_w.view(), 0, false});
-  return WriteExr(path, channels, metadata, is_interrupted);
+  return WriteExr(path, channels, metadata, is_interrupted, options.compression);
 }
 
 }  // namespace
@@ -128,6 +135,15 @@ bool IsExr(FrameFormat format) {
   return format == FrameFormat::kExrHalf || format == FrameFormat::kExrFloat;
 }
 
+std::optional<FrameChannels> ParseFrameChannels(std::string_view name) {
+  return ValueNamed(name, {FrameChannels::kAll, FrameChannels::kRgba, FrameChannels::kRgb});
+}
+
+const char* NameOf(FrameChannels channels) {
+  constexpr const char* kNames[] = {"all", "rgba", "rgb"};
+  return kNames[static_cast<int>(channels)];
+}
+
 std::filesystem::path FramePath(const std::filesystem::path& folder, FrameId frame,
                                 FrameFormat format) {
   return folder / fmt::format("frame_{:04}.{}", frame.value, IsExr(format) ? "exr" : "png");
@@ -135,12 +151,14 @@ std::filesystem::path FramePath(const std::filesystem::path& folder, FrameId fra
 
 Result<void> WriteFrame(const std::filesystem::path& path, const DevelopedFrame& frame,
                         FrameFormat format, const ImageMetadata& metadata,
-                        const std::function<bool()>& is_interrupted, const DisplayView* view) {
+                        const std::function<bool()>& is_interrupted,
+                        const PictureOptions& options) {
+  const DisplayView* const view = options.view.get();
   switch (format) {
     case FrameFormat::kExrHalf:
-      return WriteExrFrame(path, frame, true, metadata, is_interrupted);
+      return WriteExrFrame(path, frame, true, metadata, is_interrupted, options);
     case FrameFormat::kExrFloat:
-      return WriteExrFrame(path, frame, false, metadata, is_interrupted);
+      return WriteExrFrame(path, frame, false, metadata, is_interrupted, options);
     case FrameFormat::kPng8:
     case FrameFormat::kPng16:
       break;

@@ -23,12 +23,13 @@ std::filesystem::path FramePath(const std::filesystem::path& folder, FrameId fra
 
 // Writes a frame atomically, with its metadata in the file (EXR attributes, PNG text).
 //   is_interrupted  called every few rows; may be empty
-//   view            value of PictureOptions::view
+//   options         the view, the channels and the compression; its other members are those of the
+//                   caller, who converts the colours and adds the depths
 // kOutput: the folder or the disk cannot be written. kInterrupted: nothing is written.
 Result<void> WriteFrame(const std::filesystem::path& path, const DevelopedFrame& frame,
                         FrameFormat format, const ImageMetadata& metadata,
                         const std::function<bool()>& is_interrupted = {},
-                        const DisplayView* view = nullptr);
+                        const PictureOptions& options = {});
 
 // Returns the picture in a frame's file of any format, composited over black, as 8-bit sRGB
 // [height][width][3], for contact sheet and video. kInput: as for ReadImage(), or the file has

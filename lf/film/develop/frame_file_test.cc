@@ -84,6 +84,56 @@ TEST_F(FrameFileTest, ExrHoldsFocusDepthsAsFloats) {
   EXPECT_EQ(read.at(10, 5, ChannelNamed(ReadImageInfo(path).value(), "Z")), 1234.5678F);
 }
 
+// Blender's sequencer shows no file with layers, and takes the last letter of a name for a colour.
+TEST_F(FrameFileTest, NoChannelIsOfALayerOrEndsLikeAColour) {
+  DevelopedFrame frame = RandomFrame(4, 4);
+  for (Image<float>* const more : {&frame.opacity, &frame.effective_count, &frame.interpolated,
+                                   &frame.densified, &frame.trust, &frame.focus_depth_w})
+    *more = Image<float>(4, 4, 1, 1.0F);
+  const auto path = folder_ / "all.exr";
+  ASSERT_TRUE(WriteFrame(path, frame, FrameFormat::kExrHalf, {}));
+  const ImageFileInfo info = ReadImageInfo(path).value();
+  ASSERT_EQ(info.channels, 13);
+  for (const std::string& name : info.channel_names) {
+    EXPECT_EQ(name.find('.'), std::string::npos) << name;
+    if (name.size() > 1) {
+      EXPECT_EQ(std::string("rgbaxyzRGBAXYZ").find(name.back()), std::string::npos) << name;
+    }
+  }
+}
+
+TEST_F(FrameFileTest, FewerChannelsHaveTheSameLight) {
+  DevelopedFrame frame = RandomFrame(11, 40);
+  frame.opacity = Image<float>(11, 40, 1, 0.5F);
+  frame.focus_depth_w = Image<float>(11, 40, 1, 7.0F);
+  const auto names_and_light = [&](const PictureOptions& options, const DevelopedFrame& of) {
+    const auto path = folder_ / "few.exr";
+    EXPECT_TRUE(WriteFrame(path, of, FrameFormat::kExrFloat, {}, {}, options));
+    std::vector<std::string> names = ReadImageInfo(path).value().channel_names;
+    const auto read = std::get<Image<float>>(ReadImage(path).value());
+    for (int y = 0; y < 40; ++y)
+      for (int x = 0; x < 11; ++x)
+        for (int c = 0; c < 3; ++c) EXPECT_EQ(read.at(x, y, c), of.rgb.at(x, y, c));
+    return names;
+  };
+  using Names = std::vector<std::string>;
+  PictureOptions options;
+  options.compression = ExrCompression::kZips;
+  EXPECT_EQ(names_and_light(options, frame).size(), 9U);
+  options.channels = FrameChannels::kRgba;
+  EXPECT_EQ(names_and_light(options, frame), (Names{"R", "G", "B", "A", "Z"}));
+  frame.focus_depth_w = {};
+  EXPECT_EQ(names_and_light(options, frame), (Names{"R", "G", "B", "A"}));
+  options.channels = FrameChannels::kRgb;
+  EXPECT_EQ(names_and_light(options, frame), (Names{"R", "G", "B"}));
+}
+
+TEST_F(FrameFileTest, ChannelsHaveTheirNamesOnTheCommandLine) {
+  for (const char* name : {"all", "rgba", "rgb"})
+    EXPECT_STREQ(NameOf(*ParseFrameChannels(name)), name);
+  EXPECT_EQ(ParseFrameChannels("RGB"), std::nullopt);
+}
+
 TEST_F(FrameFileTest, AFrameOfAnotherColourSpaceShowsTheSamePicture) {
   DevelopedFrame frame = RandomFrame(11, 6);
   const Image<uint8_t> picture = OverBlack(frame);

@@ -10,9 +10,11 @@
 
 #include "lf/core/image.h"
 #include "lf/film/develop/colour_space.h"
-#include "lf/film/develop/display_view.h"
+#include "lf/pixels/files/exr_compression.h"
 
 namespace lf {
+
+class DisplayView;  // display_view.h
 
 // The picture of a frame. Its images have the width and the height of the frame; those that the
 // frame does not need are empty.
@@ -75,6 +77,17 @@ std::optional<FrameFormat> ParseFrameFormat(std::string_view name);
 const char* NameOf(FrameFormat format);
 bool IsExr(FrameFormat format);
 
+// The channels of the files of frames.
+enum class FrameChannels {
+  kAll,   // "all": all that FrameFormat names
+  kRgba,  // "rgba": R, G, B and A. The frame must have opacities (DevelopOptions::adds_opacity).
+  kRgb,   // "rgb": R, G and B
+};
+
+// Parses "all", "rgba" or "rgb"; none for any other text.
+std::optional<FrameChannels> ParseFrameChannels(std::string_view name);
+const char* NameOf(FrameChannels channels);
+
 // How the file of a frame shows its picture.
 struct PictureOptions {
   // Must be kRec709 for PNG files, whose values are sRGB.
@@ -84,6 +97,10 @@ struct PictureOptions {
   bool has_focus_depth = false;
   // The view that gives the values of PNG files; null: the sRGB curve. Must be null for EXR files.
   std::shared_ptr<const DisplayView> view = nullptr;
+  // Channels of EXR files besides Z, which has_focus_depth adds to any. Must be kAll for PNG files.
+  FrameChannels channels = FrameChannels::kAll;
+  // Compression of EXR files. Must be kZip for PNG files.
+  ExrCompression compression = ExrCompression::kZip;
   friend bool operator==(const PictureOptions&, const PictureOptions&) = default;
 };
 

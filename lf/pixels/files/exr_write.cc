@@ -85,9 +85,10 @@ struct AttributeStep {
 };
 
 Imf::Header HeaderOf(int width, int height, std::span<const ExrChannel> channels,
-                     const ImageMetadata& metadata) {
+                     const ImageMetadata& metadata, ExrCompression compression) {
   Imf::Header header(width, height);
-  header.compression() = Imf::ZIP_COMPRESSION;
+  header.compression() =
+      compression == ExrCompression::kZips ? Imf::ZIPS_COMPRESSION : Imf::ZIP_COMPRESSION;
   header.zipCompressionLevel() = kZipLevel;
   for (const ExrChannel& channel : channels)
     header.channels().insert(channel.name, Imf::Channel(TypeOf(channel)));
@@ -140,7 +141,7 @@ class RowsOfChannels {
 }  // namespace
 
 Result<std::string> EncodeExr(const std::string& name, std::span<const ExrChannel> channels,
-                              const ImageMetadata& metadata,
+                              const ImageMetadata& metadata, ExrCompression compression,
                               const std::function<bool()>& is_interrupted) {
   LF_CHECK(!channels.empty());
   const auto [width, height] = std::visit(
@@ -149,7 +150,8 @@ Result<std::string> EncodeExr(const std::string& name, std::span<const ExrChanne
   try {
     constexpr int kNoThreads = 0;
     OutputStream stream(name, &bytes);
-    Imf::OutputFile file(stream, HeaderOf(width, height, channels, metadata), kNoThreads);
+    Imf::OutputFile file(stream, HeaderOf(width, height, channels, metadata, compression),
+                         kNoThreads);
     RowsOfChannels rows(channels);
     for (int begin = 0; begin < height; begin += kBlockRows) {
       if (is_interrupted && is_interrupted())

@@ -23,6 +23,7 @@
 #include "lf/core/geometry.h"
 #include "lf/core/image.h"
 #include "lf/core/result.h"
+#include "lf/pixels/files/exr_compression.h"
 
 namespace lf {
 
@@ -174,6 +175,7 @@ struct ExrChannel {
 // is_interrupted returned true; nothing is written.
 Result<void> WriteExr(const std::filesystem::path& path, std::span<const ExrChannel> channels,
                       const ImageMetadata& metadata = {},
-                      const std::function<bool()>& is_interrupted = {});
+                      const std::function<bool()>& is_interrupted = {},
+                      ExrCompression compression = ExrCompression::kZip);
 
 }  // namespace lf

@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "lf/core/file.h"
+#include "lf/core/value_named.h"
 #include "lf/pixels/files/file_bytes.h"
 #include "lf/pixels/files/image_file.h"
 #include "lf/pixels/files/image_probe.h"
@@ -192,8 +193,17 @@ Result<void> WriteStoredImage(const fs::path& path, const StoredImage& pixels,
       pixels);
 }
 
+std::optional<ExrCompression> ParseExrCompression(std::string_view name) {
+  return ValueNamed(name, {ExrCompression::kZip, ExrCompression::kZips});
+}
+
+const char* NameOf(ExrCompression compression) {
+  return compression == ExrCompression::kZip ? "zip" : "zips";
+}
+
 Result<void> WriteExr(const fs::path& path, std::span<const ExrChannel> channels,
-                      const ImageMetadata& metadata, const std::function<bool()>& is_interrupted) {
+                      const ImageMetadata& metadata, const std::function<bool()>& is_interrupted,
+                      ExrCompression compression) {
   LF_CHECK(!channels.empty());
   if (LowerCaseExtension(path) != ".exr")
     return OutputError(fmt::format("{}: an EXR file needs the extension .exr", path.string()));
@@ -204,7 +214,7 @@ Result<void> WriteExr(const fs::path& path, std::span<const ExrChannel> channels
   const auto [width, height] = size(channels[0]);
   LF_RETURN_IF_ERROR(CheckShape(path, width, height));
   for (const ExrChannel& channel : channels) LF_CHECK(size(channel) == std::pair(width, height));
-  return Save(path, EncodeExr(path.string(), channels, metadata, is_interrupted));
+  return Save(path, EncodeExr(path.string(), channels, metadata, compression, is_interrupted));
 }
 
 }  // namespace lf

@@ -14,8 +14,8 @@
 namespace lf {
 
 // Number of rows that are made and encoded at a time, and of the rows in a strip of a TIFF file. It
-// is a multiple of the rows in a block of EXR's compression (16), so that the bytes of an EXR file
-// do not depend on this number. Encoding this many rows of 8192 pixels takes about 0.1 s.
+// is a multiple of the rows in a block of EXR's compression (16 or 1), so that the bytes of an EXR
+// file do not depend on this number. Encoding this many rows of 8192 pixels takes about 0.1 s.
 inline constexpr int kBlockRows = 32;
 
 inline constexpr double kLargestClassicTiff_bytes = 4000.0 * 1024 * 1024;
@@ -50,7 +50,7 @@ Result<std::string> EncodeTiff(const PictureRows& picture,
 Result<std::string> EncodeJpegRows(const PictureRows& picture);
 // EXR keeps the types of metadata. The channels must have the same size.
 Result<std::string> EncodeExr(const std::string& name, std::span<const ExrChannel> channels,
-                              const ImageMetadata& metadata,
+                              const ImageMetadata& metadata, ExrCompression compression,
                               const std::function<bool()>& is_interrupted);
 
 // Returns the value of an entry of the metadata as text.

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <optional>
+#include <span>
 #include <string>
 
 #include "lf/core/file.h"
@@ -40,6 +42,22 @@ TEST_F(WholeFileTest, WhatIsWrittenIsWhole) {
     const Result<void> whole = Check(name, Written(name));
     EXPECT_TRUE(whole) << whole.error().message;
   }
+}
+
+TEST_F(WholeFileTest, AnExrOfSingleRowsIsWhole) {
+  Image<float> floats(23, 100, 1, 0.5F);
+  const ExrChannel channel = {"R", floats.view()};
+  const auto path = folder_ / "rows.exr";
+  ASSERT_TRUE(WriteExr(path, std::span(&channel, 1), {}, {}, ExrCompression::kZips));
+  EXPECT_TRUE(CheckFileIsWhole(path));
+  const std::string bytes = ReadFile(path).value();
+  EXPECT_NE(bytes.find(std::string("compression\0compression\0\1\0\0\0\2", 29)), std::string::npos);
+  const Result<void> cut = Check("rows.exr", bytes.substr(0, bytes.size() - 1));
+  ASSERT_FALSE(cut);
+  EXPECT_NE(cut.error().message.find("of 100"), std::string::npos) << cut.error().message;
+  EXPECT_EQ(ParseExrCompression("zips"), ExrCompression::kZips);
+  EXPECT_STREQ(NameOf(ExrCompression::kZip), "zip");
+  EXPECT_EQ(ParseExrCompression("piz"), std::nullopt);
 }
 
 // BigTIFF is what pictures of more than 4000 MiB become.

@@ -32,9 +32,10 @@ Result<void> CheckRenderOptions(const Package& package, const RenderOptions& opt
         "out, and give {video} to lfmerge");
   if (film.shard && (film.adds_opacity || folder.picture != PictureOptions()))
     return UsageError(
-        "{frame_alpha}, {colour_space}, {z} and {view} cannot be used with {shard}, which writes "
-        "no "
-        "frames: leave them out, and give them to lfmerge");
+        "{frame_alpha}, {colour_space}, {z}, {channels}, {exr_compression} and {view} cannot be "
+        "used with {shard}, which writes no frames: leave them out, and give them to lfmerge");
+  if (folder.picture.channels == FrameChannels::kRgba && !film.adds_opacity)
+    return UsageError("{channels rgba} needs frames with alpha: add {frame_alpha}");
   return {};
 }
 

@@ -56,7 +56,7 @@ Result<void> WritePicture(const PlateNotes& notes, DevelopedFrame picture,
   if (options.has_focus_depth) picture.focus_depth_w = FocusDepths(notes.camera);
   ImageMetadata metadata = FileMetadata(notes, format, options.colours);
   metadata.insert(metadata.end(), more.begin(), more.end());
-  return WriteFrame(to, picture, format, metadata, is_interrupted, options.view.get());
+  return WriteFrame(to, picture, format, metadata, is_interrupted, options);
 }
 
 FilmFiles FilesOfFilm(const CameraPath& path, const RenderOptions& options) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "lf/film/develop/display_view.h"
 #include "lf/light_field/model/value_hasher.h"
 #include "lf/render/settings/setting_table.h"
 #include "lf/selection/lens_weights/frame_weights.h"
@@ -159,11 +160,15 @@ RunInputs InputsOfPicture(const RunChoices& choices) {
     inputs.push_back(std::move(setting));
   // Frames of earlier builds, which lack this input, have other names of channels.
   if (const auto format = ParseFrameFormat(choices.format); format && IsExr(*format))
-    inputs.emplace_back("picture.channels", fmt::format("all, with {}", kCountChannels[0]));
+    inputs.emplace_back("picture.channels", choices.look.channels == FrameChannels::kAll
+                                                ? fmt::format("all, with {}", kCountChannels[0])
+                                                : std::string(NameOf(choices.look.channels)));
   if (choices.film.adds_opacity) inputs.emplace_back("picture.alpha", "on");
   if (choices.look.colours != ColourSpace::kRec709)
     inputs.emplace_back("picture.colour_space", NameOf(choices.look.colours));
   if (choices.look.has_focus_depth) inputs.emplace_back("picture.z", "on");
+  if (choices.look.compression != ExrCompression::kZip)
+    inputs.emplace_back("picture.exr_compression", NameOf(choices.look.compression));
   if (choices.look.view) inputs.emplace_back("picture.view", choices.look.view->identity());
   return inputs;
 }
