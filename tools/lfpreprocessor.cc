@@ -17,6 +17,7 @@
 #include "tools/common/progress.h"
 #include "tools/common/setting_options.h"
 #include "tools/common/validators.h"
+#include "tools/pinhole_advice.h"
 
 #include "lf/core/quantities.h"
 #include "lf/core/spelling.h"
@@ -241,6 +242,7 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
     options.light_field_options = words.WordsToKeep();
   }
   if (a.frames.IsNone(options.frames)) return ReportNoFrames(a, common, light_field, path);
+  lf::WarnOfPinhole(light_field, path, options.frames, options.film, a.light_field.path, a.path);
   options.interrupted = &interrupted;
   lf::ThreadPool pool(common.threads);
   // Packages hold the cameras of the whole path.

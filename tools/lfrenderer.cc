@@ -15,6 +15,7 @@
 #include "tools/common/program.h"
 #include "tools/common/programs.h"
 #include "tools/common/progress.h"
+#include "tools/pinhole_advice.h"
 #include "tools/render_arguments.h"
 #include "tools/render_densified.h"
 #include "tools/render_summary.h"
@@ -86,6 +87,9 @@ lf::Result<Rendered> RenderLightField(const lf::RenderArguments& arguments,
   LF_RETURN_IF_ERROR(lf::FitToOpenTimes(light_field, &path));
   LF_ASSIGN_OR_RETURN(lf::RenderOptions options, arguments.MakeOptions(common, path.frames()));
   if (arguments.HasNoFrame(options)) return NoFrames(arguments, std::move(options));
+  if (!arguments.densify)
+    lf::WarnOfPinhole(light_field, path, options.frames, options.film, arguments.inputs[0],
+                      arguments.inputs[1]);
   options.signals = signals;
   // A render compares the surfaces of all frames of earlier renders that it finds.
   const bool has_other_frames =

@@ -13,6 +13,7 @@ import bpy
 import mathutils
 import numpy as np
 
+from . import rig as rigs
 from . import scene_camera
 from .calibration import unit_m
 from .errors import InputError, OutputError
@@ -20,6 +21,7 @@ from .plan import round_to
 
 # Camera axes of a path: x right, y down, z forward.
 BLENDER_FROM_PATH = np.diag([1.0, -1.0, -1.0])
+LEAST_FSTOP = 0.1  # of Blender's cameras
 SENSOR_MM = 36  # sensor width of imported cameras
 FLOAT_DIGITS = 9  # digits that tell apart all 32-bit floats, which Blender's numbers are
 # Largest angle between two frames that becomes a key to turn to. A camera that turns farther has been exchanged.
@@ -46,8 +48,14 @@ class CameraKey:
     ratio: float
 
 
+@dataclasses.dataclass(frozen=True)
+class Exported:
+    count: int  # of frames
+    is_pinhole: bool  # True: depth of field is off in all of them
+
+
 def export_path(scene, file, first, last):
-    """Writes the frames first to last of the scene, by its frame step. Returns their number.
+    """Writes the frames first to last of the scene, by its frame step. Returns Exported.
 
     InputError if a path cannot describe the camera; OutputError if the file cannot be written.
     """
@@ -67,7 +75,20 @@ def export_path(scene, file, first, last):
         pathlib.Path(file).write_text(text)
     except OSError as error:
         raise OutputError(f"{file}: {error.strerror}") from None
-    return len(keys)
+    return Exported(len(keys), all(key.aperture_diameter == 0 for key in keys))
+
+
+def pinhole_words(scene):
+    """Returns what to tell of a path without depth of field, with a lens that the rig of the panel fills."""
+    words = ("depth of field is off, so that the path films a pinhole, which sees few LF cameras and has no blur. For "
+             "a lens, switch Depth of Field on in the properties of the camera")
+    camera, settings = scene.camera.data, scene.lfrendertools
+    widest = rigs.widest_aperture(rigs.Rig(settings.shape, settings.columns, settings.rows, tuple(settings.spacing),
+                                           tuple(settings.angle), settings.pivot or camera.dof.focus_distance))
+    if widest <= 0:
+        return words
+    stop = max(camera.lens * 1e-3 / widest, LEAST_FSTOP)
+    return f"{words}, with an F-Stop of at least {stop:.2g}, which the rig of the panel fills"
 
 
 def camera_key(scene, depsgraph, previous):

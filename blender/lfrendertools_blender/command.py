@@ -120,7 +120,7 @@ def run_capture(arguments, scene):
         plan.depth_range = measured_depths(scene, depsgraph, plan)
     say("Depths: {} to {}".format(*plan.depth_range))
     for name, value, is_warning in readout(scene, plan):
-        say(f"{name}: {value}" + (" (too large, see doc/blender.md)" if is_warning else ""))
+        say(f"{name}: {value}" + (" (see doc/blender.md)" if is_warning else ""))
     return 0 if arguments.plan else render_all(scene, plan, arguments.folder)
 
 
@@ -151,8 +151,10 @@ def render_all(scene, plan, folder):
 def run_export(arguments, scene):
     first, last = arguments.frames or (scene.frame_start, scene.frame_end)
     require(first <= last, "--frames: FIRST is after LAST")
-    count = camera_path.export_path(scene, arguments.file, first, last)
-    say(f"{count} frames in {arguments.file}")
+    path = camera_path.export_path(scene, arguments.file, first, last)
+    if path.is_pinhole:
+        say(f"warning: {camera_path.pinhole_words(scene)}")
+    say(f"{path.count} frames in {arguments.file}")
     return 0
 
 

@@ -101,11 +101,13 @@ class LFRENDERTOOLS_OT_export_path(bpy.types.Operator, ExportHelper):
     def execute(self, context):
         scene = context.scene
         try:
-            count = camera_path.export_path(scene, self.filepath, scene.frame_start, scene.frame_end)
+            path = camera_path.export_path(scene, self.filepath, scene.frame_start, scene.frame_end)
         except Failure as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
-        self.report({"INFO"}, f"{count} frames")
+        self.report({"INFO"}, f"{path.count} frames")
+        if path.is_pinhole:
+            self.report({"WARNING"}, camera_path.pinhole_words(scene))
         return {"FINISHED"}
 
 

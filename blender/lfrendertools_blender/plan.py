@@ -123,7 +123,10 @@ def readout(scene, plan):
             lines.append(("1 px spacing", length(spacing / max(steps)), False))
     widest = rigs.widest_aperture(plan.rig)
     lines.append(("Widest lens", length(widest), False))
-    lines.append(("Camera's lens", length(plan.aperture), plan.aperture > widest))
+    if plan.aperture > 0:
+        lines.append(("Camera's lens", length(plan.aperture), plan.aperture > widest))
+    else:
+        lines.append(("Camera's lens", "none: Depth of Field is off", True))
     return lines
 
 

@@ -65,6 +65,9 @@ def preprocessed(options, same):
 
 
 SITUATIONS = [
+    Situation(("pinhole_advice: To make a path with f/",), "lfrenderer capture pinhole.yaml -o new",
+              "lfpath pinhole.yaml",
+              promise="lfrenderer capture lens.yaml -o again > said 2>&1 && ! grep -q 'the aperture is 0' said"),
     # The next step.
     Situation(NEXT, "lfcompressor capture -o new.lfs --profile lossless", "lfrenderer new.lfs", values=PATH,
               promise=same_film(FILM)),

@@ -10,6 +10,7 @@ import json
 import math
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -186,6 +187,23 @@ class PathTest(ProgramTestCase):
                 self.assertAlmostEqual(ours["blade_rotation_deg"], 90 + math.degrees(blenders["rotation"]), delta=1e-6)
             else:
                 self.assertEqual(ours["aperture_diameter_mm"], 0)
+
+    def test_a_path_without_depth_of_field_says_so(self):
+        """Depth of field is off in the cameras of Blender, unless somebody switches it on."""
+        scene = self.folder / "plain.blend"
+        scene_of("plain", file=str(scene), size=(150, 90), frames=3)
+        self.assertIn("warning: depth of field is off, so that the path films a pinhole",
+                      addon(scene, "export-path", self.folder / "pinhole.yaml"))
+        said = addon(scene, "capture", self.folder / "field", "--plan", "--depth-range", 2, 5)
+        self.assertIn("Camera's lens: none: Depth of Field is off", said)
+        # The f-stop that it names is that of a lens which the rig fills.
+        said = addon(scene, "export-path", self.folder / "again.yaml")
+        stop = float(re.search(r"F-Stop of at least ([\d.]+)", said)[1])
+        scene_of("changed", file=str(scene), dof__use_dof=True, dof__aperture_fstop=stop)
+        self.assertNotIn("warning", addon(scene, "export-path", self.folder / "lens.yaml"))
+        said = addon(scene, "capture", self.folder / "field", "--plan", "--depth-range", 2, 5)
+        self.assertRegex(said, r"Camera's lens: [\d.]+ \S+\n")
+        self.assertGreater(self.exported(scene, "lens.yaml")["cameras"][0]["aperture_diameter_mm"], 100)
 
     def test_an_imported_path_is_exported_again(self):
         path = self.exported(self.scene, "path.yaml")
