@@ -3,9 +3,12 @@
 """Tests that the programs which people open EXR frames with show their picture: Blender (image, sequencer and
 compositor), ffmpeg, OpenCV, OpenImageIO and OpenEXR's own. The table of doc/formats/frame.md tells what each shows.
 
-usage: frame_readers_test.py LFSYNTH LFRENDERER [TEST...]
+Frames of earlier builds, whose counts have other names, are read by our programs.
+
+usage: frame_readers_test.py LFSYNTH LFRENDERER LFCOMPARE LFQUILT [TEST...]
 The test of Blender is skipped if there is no blender.
 """
+import json
 import os
 import shutil
 import subprocess
@@ -20,7 +23,7 @@ import blender_run
 from exr_file import channels_of
 from program_test_case import ProgramTestCase
 
-SYNTH = RENDERER = None
+SYNTH = RENDERER = COMPARE = QUILT = None
 WIDTH, HEIGHT = 64, 48
 PATH = f"""format: lfpath 1
 fps: 25
@@ -101,6 +104,21 @@ class ReadersTest(ProgramTestCase):
         self.assertEqual(set(channels_of(self.frames["default"])), {*"RGB", *FACTS})
         self.assertEqual(set(channels_of(self.frames["everything"])), {*"RGBAZ", *FACTS})
 
+    def test_our_programs_read_frames_of_earlier_builds(self):
+        for name in ("default", "everything"):
+            new, old = self.frames[name], self.folder / f"{name}.exr"
+            names = [*channels_of(new)]
+            former = {"count_red": "count.R", "count_green": "count.G", "count_blue": "count.B"}
+            self.succeeds("oiiotool", new, "--ch", ",".join(names), "--chnames",
+                          ",".join(former.get(channel, channel) for channel in names), "-o", old)
+            self.assertEqual(set(channels_of(old)), {former.get(channel, channel) for channel in names})
+            told = json.loads(self.succeeds(COMPARE, new, old, "--json"))
+            self.assertEqual((told["all"]["psnr_db"], told["all"]["flip"]), (None, 0))
+            self.fails(3, ["count_red"], QUILT, new, old, "-o", self.folder / "mixed.exr", "--layout", "side-by-side")
+            self.succeeds(QUILT, old, old, "-o", self.folder / f"{name}_pair.exr", "--layout", "side-by-side")
+            pair = channels_of(self.folder / f"{name}_pair.exr")
+            self.assert_shows(name, np.dstack([pair[channel][:, :WIDTH] for channel in "RGB"]))
+
     @unittest.skipIf(blender_run.BLENDER is None, "there is no blender here (scripts/install_packages.sh blender)")
     def test_blender_shows_the_picture_in_three_ways(self):
         names = sorted(self.frames)
@@ -115,7 +133,7 @@ class ReadersTest(ProgramTestCase):
 
 
 if __name__ == "__main__":
-    SYNTH, RENDERER = sys.argv[1:3]
+    SYNTH, RENDERER, COMPARE, QUILT = sys.argv[1:5]
     if not shutil.which("exrheader"):
         sys.exit("exrheader is missing: scripts/install_packages.sh test")
-    unittest.main(argv=sys.argv[:1] + sys.argv[3:])
+    unittest.main(argv=sys.argv[:1] + sys.argv[5:])
