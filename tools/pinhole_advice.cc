@@ -41,7 +41,7 @@ void WarnOfPinhole(const LightField& light_field, const CameraPath& path,
       "the aperture is 0 in {}: a pinhole, which sees few LF cameras and has no blur. "
       "--lens-weights hat, which such a film has in any case, says that it is meant",
       count == 1 ? "the frame" : fmt::format("all {} frames", count));
-  const RenderCamera& first = path.Camera(frames.empty() ? FrameId{1} : frames.front());
+  const RenderCamera& first = frames.empty() ? path.cameras.front() : path.Camera(frames.front());
   const std::optional<ProposedLens> lens =
       ProposeLens(light_field, first.pinhole, first.focus_distance_w);
   if (!lens || !(first.focal_length_w > 0)) return LogWarning("{}", words);

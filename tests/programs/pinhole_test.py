@@ -54,6 +54,13 @@ class PinholeTest(ProgramTestCase):
         # The next warning does not advise to replace this path.
         self.assertIn(" -o lens-2.yaml ", self.film("again", "--frames", 1)[0][0])
 
+    def test_a_film_that_begins_at_1001_warns(self):
+        self.path.write_text(self.path.read_text().replace("frames: 3\n", "frames: 3\nfirst_frame: 1001\n"))
+        for options in ([], ["--frames", 1002]):
+            warnings = self.film(f"later{len(options)}", *options)[0]
+            self.assertEqual(len(warnings), 1)
+            self.assertIn("lfpath path.yaml", warnings[0])
+
     def test_packages_warn_when_they_are_made(self):
         self.assertEqual(len(self.said(PREPROCESSOR, "a field", "path.yaml", "-o", "packages")), 1)
         self.assertEqual(self.said(PREPROCESSOR, "a field", "path.yaml", "-o", "more", "--lens-weights", "hat"), [])
