@@ -50,6 +50,7 @@ class CameraKey:
 
 @dataclasses.dataclass(frozen=True)
 class Exported:
+    first: int  # frame of the scene at which the path begins
     count: int  # of frames
     is_pinhole: bool  # True: depth of field is off in all of them
 
@@ -70,12 +71,21 @@ def export_path(scene, file, first, last):
                 raise InputError(f"frame {frame}: {error}") from None
     finally:
         scene.frame_set(before[0], subframe=before[1])
-    text = path_yaml(scene, keys)
+    text = path_yaml(scene, keys, first)
     try:
         pathlib.Path(file).write_text(text)
     except OSError as error:
         raise OutputError(f"{file}: {error.strerror}") from None
-    return Exported(len(keys), all(key.aperture_diameter == 0 for key in keys))
+    return Exported(first, len(keys), all(key.aperture_diameter == 0 for key in keys))
+
+
+def warnings_of(scene, path):
+    """Returns what to tell of a path that was exported (Exported)."""
+    if path.first < 0:
+        yield (f"frame {path.first} of the scene is frame 1 of the path, because frames of a path have no numbers "
+               "below 0: let the scene begin at frame 0 or later")
+    if path.is_pinhole:
+        yield pinhole_words(scene)
 
 
 def pinhole_words(scene):
@@ -138,8 +148,9 @@ def quaternion_of(rotation):
     return row / np.linalg.norm(row)
 
 
-def path_yaml(scene, keys):
-    """Returns the text of the path. InputError if something moves that a path keeps."""
+def path_yaml(scene, keys, first_frame):
+    """Returns the text of the path, whose frames have the numbers of the scene's from first_frame on. InputError if
+    something moves that a path keeps."""
     first = keys[0]
     constant = {"sensor_width_mm": "sensor size", "blades": "number of blades", "ratio": "anamorphic ratio"}
     for name, words in constant.items():
@@ -156,7 +167,8 @@ def path_yaml(scene, keys):
             moving.append((name, values))
     line = lambda name: f"  {name}: {value_words(name, still[name])}\n" if name in still else ""
     text = (f"# The camera of the scene {json.dumps(scene.name)}, from Blender {bpy.app.version_string}.\n"
-            f"format: lfpath 1\nfps: {fps!r}\nframes: {len(keys)}\nunit_m: {unit_m(scene)!r}\n"
+            f"format: lfpath 1\nfps: {fps!r}\nframes: {len(keys)}\n"
+            f"{number_line(first_frame)}unit_m: {unit_m(scene)!r}\n"
             f"resolution: [{width}, {height}]\ncamera:\n  sensor_width_mm: {first.sensor_width_mm!r}\n"
             f"{line('focal_length_mm')}{line('shift_mm')}{line('position')}{line('quaternion')}"
             f"lens:\n{line('aperture_diameter')}{line('focus_distance')}"
@@ -164,6 +176,12 @@ def path_yaml(scene, keys):
     if moving:
         text += "keyframes:\n" + "".join(keyframes(name, values, fps) for name, values in moving)
     return text
+
+
+def number_line(first_frame):
+    """Returns the line of a path that states the number of its first frame. Frames of a path have no numbers below 0: a
+    scene that begins earlier has a path that begins at 1."""
+    return f"first_frame: {first_frame}\n" if first_frame >= 0 else ""
 
 
 def keyframes(name, values, fps):
@@ -199,8 +217,8 @@ def read_path(file, program):
 
 
 def import_path(scene, file, program="lfcammvminfo"):
-    """Adds a camera that moves as a path says, from the first frame of the scene on, and makes it the scene's camera.
-    The scene takes over resolution, frame rate and length. Returns the camera.
+    """Adds a camera that moves as a path says, and makes it the scene's camera. The scene takes over resolution, frame
+    rate, and the numbers of the frames. Returns the camera.
 
     program  the program lfcammvminfo, which evaluates keyframes and accelerations
     """
@@ -276,6 +294,8 @@ def set_frames(scene, path):
     render.fps = max(1, math.ceil(path["fps"] - 1e-6))
     render.fps_base = render.fps / path["fps"]
     scene.frame_step = 1
+    # Programs of earlier builds tell no number: the path then begins at the first frame of the scene.
+    scene.frame_start = path.get("first_frame", scene.frame_start)
     scene.frame_end = scene.frame_start + path["frames"] - 1
 
 

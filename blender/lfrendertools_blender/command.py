@@ -152,8 +152,8 @@ def run_export(arguments, scene):
     first, last = arguments.frames or (scene.frame_start, scene.frame_end)
     require(first <= last, "--frames: FIRST is after LAST")
     path = camera_path.export_path(scene, arguments.file, first, last)
-    if path.is_pinhole:
-        say(f"warning: {camera_path.pinhole_words(scene)}")
+    for words in camera_path.warnings_of(scene, path):
+        say(f"warning: {words}")
     say(f"{path.count} frames in {arguments.file}")
     return 0
 

@@ -106,8 +106,8 @@ class LFRENDERTOOLS_OT_export_path(bpy.types.Operator, ExportHelper):
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         self.report({"INFO"}, f"{path.count} frames")
-        if path.is_pinhole:
-            self.report({"WARNING"}, camera_path.pinhole_words(scene))
+        for words in camera_path.warnings_of(scene, path):
+            self.report({"WARNING"}, words)
         return {"FINISHED"}
 
 

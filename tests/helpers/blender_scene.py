@@ -187,6 +187,19 @@ def chan(file, path, order, size, frames):
     bpy.ops.wm.save_as_mainfile(filepath=file)
 
 
+def numbered(file, first, last):
+    """A scene of some lights on a wall, whose camera moves from frame `first` to `last`."""
+    scene, camera = empty_scene(64, 48, 1)
+    scene.frame_start, scene.frame_end = first, last
+    shape("plane", (0, 4, 0), shining("wall", (1, 0.8, 0.6), 1.2), size=20).rotation_euler = (math.pi / 2, 0, 0)
+    camera.rotation_euler = (math.pi / 2, 0, 0)
+    camera.data.dof.use_dof, camera.data.dof.focus_distance, camera.data.dof.aperture_fstop = True, 4, 0.5
+    for frame, x in ((first, -0.1), (last, 0.1)):
+        camera.location.x = x
+        camera.keyframe_insert("location", frame=frame)
+    bpy.ops.wm.save_as_mainfile(filepath=file)
+
+
 def plain(file, size, frames):
     """A scene with Blender's usual camera, which stands still."""
     scene, camera = empty_scene(*size, 1)
@@ -262,6 +275,25 @@ def shown(files, folder):
         scene.sequence_editor_clear()
         compose(scene, image)
         scene.render.filepath = f"{folder}/{number}_compositor.exr"
+        bpy.ops.render.render(write_still=True)
+
+
+def strip(files, first, frames, folder):
+    """Renders frames of a strip of images that begins at frame `first`, into the files N.exr of a folder."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    scene = bpy.context.scene
+    size = bpy.data.images.load(files[0]).size
+    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = *size, 100
+    settings = scene.render.image_settings
+    settings.file_format, settings.color_mode, settings.color_depth = "OPEN_EXR", "RGB", "32"
+    images = strips_of(scene.sequence_editor_create()).new_image("frames", files[0], 1, first)
+    for file in files[1:]:
+        images.elements.append(pathlib.Path(file).name)
+    assert (images.frame_final_start, images.frame_final_duration) == (first, len(files))
+    scene.frame_start, scene.frame_end = first, first + len(files) - 1
+    for frame in frames:
+        scene.frame_set(frame)
+        scene.render.filepath = f"{folder}/{frame}.exr"
         bpy.ops.render.render(write_still=True)
 
 

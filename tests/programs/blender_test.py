@@ -235,6 +235,48 @@ class PathTest(ProgramTestCase):
             self.assertFalse((self.folder / "refused.yaml").exists())
 
 
+class NumberedFilmTest(ProgramTestCase):
+    def test_frames_keep_the_numbers_of_the_scene(self):
+        """A film of the frames 1001 to 1048 of a scene goes into the sequencer, and its path into another scene."""
+        first, last = 1001, 1048
+        scene, field, path = self.folder / "shot.blend", self.folder / "field", self.folder / "path.yaml"
+        scene_of("numbered", file=str(scene), first=first, last=last)
+        addon(scene, "export-path", path)
+        self.assertIn(f"\nfirst_frame: {first}\n", path.read_text())
+        addon(scene, "capture", field, "--count", 5, 5, "--spacing", 0.05, 0.05, "--overscan", 0.2)
+        film = self.folder / "film"
+        self.succeeds(RENDERER, field, path, "-o", film, "--no-contact-sheet")
+        frames = sorted(film.glob("frame_*.exr"))
+        self.assertEqual([frame.name for frame in frames], [f"frame_{n}.exr" for n in range(first, last + 1)])
+        self.succeeds(RENDERER, field, path, "-o", self.folder / "few", "--frames", "1001,1010", "--no-contact-sheet")
+        for name in ("frame_1001.exr", "frame_1010.exr"):
+            self.assertEqual((self.folder / "few" / name).read_bytes(), (film / name).read_bytes())
+
+        shown = (first, 1010, last)
+        scene_of("strip", files=list(map(str, frames)), first=first, frames=shown, folder=str(self.folder))
+        pictures = {n: picture(film / f"frame_{n}.exr") for n in shown}
+        for number in shown:
+            seen = picture(self.folder / f"{number}.exr")
+            np.testing.assert_allclose(seen, pictures[number], rtol=2e-3, atol=2e-3)
+        self.assertGreater(np.abs(pictures[first] - pictures[last]).max(), 0.05)
+
+        # Frames before 0 have no number in a path.
+        addon(scene, "export-path", self.folder / "zero.yaml", "--frames", 0, 1)
+        self.assertIn("\nfirst_frame: 0\n", (self.folder / "zero.yaml").read_text())
+        self.assertIn("warning: frame -2 of the scene is frame 1 of the path",
+                      addon(scene, "export-path", self.folder / "below.yaml", "--frames", -2, 1))
+        self.assertNotIn("first_frame", (self.folder / "below.yaml").read_text())
+
+        # Back: the range of another scene becomes that of the path, and the path stays the same.
+        other = self.folder / "other.blend"
+        scene_of("plain", file=str(other), size=(64, 48), frames=3)
+        addon(other, "import-path", path, "-o", self.folder / "back.blend", "--lfcammvminfo", CAMMVMINFO)
+        addon(self.folder / "back.blend", "export-path", self.folder / "again.yaml")
+        for key in ("first_frame", "frames", "fps", "resolution"):
+            line = re.search(rf"^{key}: .*$", path.read_text(), re.M)[0]
+            self.assertIn(f"\n{line}\n", (self.folder / "again.yaml").read_text())
+
+
 MOVING = """format: lfpath 1
 fps: 25
 frames: 6
