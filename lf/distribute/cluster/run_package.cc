@@ -139,6 +139,8 @@ Result<ProcessEnd> TaskRun::Run(const std::vector<std::string>& words, const fs:
   ::close(log);
   if (options.output >= 0) ::close(options.output);
   if (!command) return command.error();
+  if (const auto shared = lock_->ShareWith((*command)->process()); !shared)
+    LogWarning("{}", shared.error().message);
   ++state_.start_count;
   LogDebug("{}: start {}, process {}: {}", task_.name, state_.start_count, (*command)->process(),
            ShellCommand(words));

@@ -57,12 +57,18 @@ uint64_t BytesOnDisk(const fs::path& folder) {
   return bytes;
 }
 
+// On a disk without locks nothing tells that a program uses a store but the time when it was
+// opened.
+constexpr auto kStaysWithoutLocks = std::chrono::hours(24 * 30);
+
 // Removes the folder of a store, unless a program uses it. Returns true if it is gone.
-bool RemoveStore(const fs::path& folder) {
+//   age  time since a program opened the store
+bool RemoveStore(const fs::path& folder, fs::file_time_type::duration age) {
   const int fd = ::open((folder / kInUse).c_str(), O_RDWR | O_CLOEXEC);
   if (fd < 0) return false;
   std::error_code error;
-  const bool is_free = ::flock(fd, LOCK_EX | LOCK_NB) == 0;
+  bool is_free = ::flock(fd, LOCK_EX | LOCK_NB) == 0;
+  if (!is_free && errno != EWOULDBLOCK) is_free = age > kStaysWithoutLocks;
   if (is_free) fs::remove_all(folder, error);
   ::close(fd);
   return is_free && !error;
@@ -123,7 +129,8 @@ Result<void> UseCacheFolder(const fs::path& folder) {
     return error;
   }
   if (used.insert(folder).second)
-    ::flock(fd, LOCK_SH | LOCK_NB);  // fails only while the folder is being removed
+    // Fails only while the folder is being removed, and on disks without locks.
+    ::flock(fd, LOCK_SH | LOCK_NB);
   else
     ::close(fd);
   return {};
@@ -147,7 +154,7 @@ void RemoveOldStores(const fs::path& cache, uint64_t most_bytes) {
             [](const OldStore& a, const OldStore& b) { return a.used < b.used; });
   for (const OldStore& store : old) {
     if (sum_bytes <= most_bytes) return;
-    if (!RemoveStore(store.folder)) continue;
+    if (!RemoveStore(store.folder, now - store.used)) continue;
     sum_bytes -= store.bytes;
     LogDebug("{}: removed, because it was not used for the longest time", store.folder.string());
   }

@@ -19,6 +19,11 @@ namespace {
 
 constexpr int kMaxBlobBytes = 1 << 30;
 
+// SQLite's layer of the system for files that are written. It takes no locks, which some disks of
+// clusters do not have: a file that is written has a temporary name, or its writer holds a
+// FileLock.
+constexpr const char* kWithoutLocks = "unix-none";
+
 // One command may take kStepsOfSmallFile steps of SQLite's virtual machine, and kStepsOfByte more
 // for each byte of the file. This is checked every kStepsBetweenLooks steps. Reading takes about 10
 // steps for each value, and each value takes at least a byte of the file. A damaged file could take
@@ -339,7 +344,7 @@ Result<Database> Database::Create(const fs::path& path, const DatabaseFormat& fo
   std::error_code ignored;
   fs::remove(path, ignored);
   constexpr int kFlags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX;
-  if (sqlite3_open_v2(path.c_str(), &state->handle, kFlags, nullptr) != SQLITE_OK)
+  if (sqlite3_open_v2(path.c_str(), &state->handle, kFlags, kWithoutLocks) != SQLITE_OK)
     return state->Failed();
   Database database(std::move(state));
   // No journal is needed, because the file has a temporary name and is flushed when it is complete.
@@ -356,7 +361,7 @@ Result<Database> Database::OpenToAppend(const fs::path& path, const DatabaseForm
   state->what = format.name;
   state->kind = ErrorKind::kOutput;
   constexpr int kFlags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX;
-  if (sqlite3_open_v2(path.c_str(), &state->handle, kFlags, nullptr) != SQLITE_OK)
+  if (sqlite3_open_v2(path.c_str(), &state->handle, kFlags, kWithoutLocks) != SQLITE_OK)
     return state->Failed();
   Database database(std::move(state));
   // Uses a rollback journal and not a write-ahead log: batches write new pages, which the journal
