@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import logging
 
+from . import extension as _extension  # noqa: F401  is first, because it says why this Python cannot load _core
 from . import _core
 from .camera import Camera
 from .camera_path import Path

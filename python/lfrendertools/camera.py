@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from . import _core, arguments
 from .errors import InputError, UsageError
+from .keywords import suggests_names
 from .path_text import text_of_camera
 
 if TYPE_CHECKING:
@@ -96,6 +97,7 @@ class Camera:
 
     __slots__ = ("_core",)
 
+    @suggests_names
     def __init__(self, position: Vector, *, look_at: Optional[Vector] = None, quaternion: Optional[Vector] = None,
                  world_from_cam: Optional[npt.ArrayLike] = None, up: Optional[Vector] = None, roll_deg: float = 0,
                  resolution: Tuple[int, int], focal_length_mm: Optional[float] = None,

@@ -8,7 +8,8 @@ from typing import Any, Iterable, Iterator, List, Mapping, Optional, Sequence, T
 
 from . import _core, arguments
 from .camera import Camera
-from .errors import UsageError
+from .errors import UsageError, caller_level
+from .keywords import suggests_names
 
 
 class Path(Sequence[Camera]):
@@ -43,6 +44,7 @@ class Path(Sequence[Camera]):
     [0.8, 1.6]
     """
 
+    @suggests_names
     def __init__(self, cameras: Iterable[Camera], fps: float = 24,
                  shutter: Union[None, Tuple[float, int], Mapping[str, Any]] = None, views: int = 1,
                  first_frame: int = 1) -> None:
@@ -106,6 +108,7 @@ class Path(Sequence[Camera]):
         self._fps = arguments.within("fps", fps, 0.001, 1e6)
 
     @classmethod
+    @suggests_names
     def load(cls, path: Union[str, os.PathLike[str]], unit_m: Optional[float] = None) -> Path:
         """Read a camera path of any form: our own (doc/formats/path.md) or that of another program
         (doc/formats/foreign_paths.md).
@@ -129,6 +132,7 @@ class Path(Sequence[Camera]):
         return cls._of(cameras, fps, first_frame, shutter, views)
 
     @classmethod
+    @suggests_names
     def parse(cls, text: str, name: str = "path", unit_m: Optional[float] = None) -> Path:
         """Read a camera path as :meth:`load` does, but from the text of a file. Error messages call it `name`."""
         # Text that is not Unicode cannot be in a path, and stands in messages with question marks.
@@ -138,6 +142,7 @@ class Path(Sequence[Camera]):
         cameras, fps, first_frame, shutter, views = _core.parse_path(utf8, utf8_name, unit)
         return cls._of(cameras, fps, first_frame, shutter, views)
 
+    @suggests_names
     def save(self, path: Union[str, os.PathLike[str]], format: Optional[str] = None) -> None:
         """Write a camera path file. Each frame gets a camera of its own. Only YAML keeps the shutter, and interpolates
         its cameras between those of the frames.
@@ -169,10 +174,11 @@ class Path(Sequence[Camera]):
         lost = _core.save_path(file, [camera._core for camera in self._cameras], self.fps, self._first_frame,
                                self._shutter, self._views, None if format is None else arguments.text("format", format))
         if lost:
-            warnings.warn(f"{os.fsdecode(file)}: the format has no place for {'; for '.join(lost)}", stacklevel=2)
+            warnings.warn(f"{os.fsdecode(file)}: the format has no place for {'; for '.join(lost)}",
+                          stacklevel=caller_level())
         if self._shutter and format == "yaml":
             warnings.warn(f"{os.fsdecode(file)}: before the first frame and after the last one, the camera stands "
-                          "still, so that these two frames are blurred less", stacklevel=2)
+                          "still, so that these two frames are blurred less", stacklevel=caller_level())
 
     @property
     def cameras(self) -> Sequence[Camera]:

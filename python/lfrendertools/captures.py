@@ -12,8 +12,9 @@ from . import _core, arguments, opening
 from .arguments import FilePath
 from .camera import Camera
 from .camera_path import Path
-from .errors import MissingImagesWarning, UsageError
+from .errors import MissingImagesWarning, UsageError, caller_level
 from .film_options import film_words
+from .keywords import suggests_names
 from .light_field import LightField
 from .path_arguments import Frames, frame_numbers, path_in
 from .progress import Progress, checked, telling
@@ -21,6 +22,7 @@ from .progress import Progress, checked, telling
 _Facts = Dict[str, Any]
 
 
+@suggests_names
 def report(field: LightField, *, check: str = "headers", distance: Optional[float] = None, threads: int = 0,
            progress: Progress = None) -> _Facts:
     """Report what a light field contains, and what looks wrong in it, as `lfimport` does.
@@ -154,13 +156,14 @@ def write_packages(field: LightField, path: Union[Path, Camera], folder: FilePat
     facts = _preprocess(field, path, frames, words, depths, threads, checked(progress), options)
     if facts["lf_images_missing"]:
         warnings.warn(f"{facts['lf_images_missing']} of the LF images that packages need do not exist, or are empty",
-                      MissingImagesWarning, stacklevel=2)
+                      MissingImagesWarning, stacklevel=caller_level())
     return facts
 
 
 PROFILES = ("default", "lossless", "thesis", "recorded", "group", "group-lossless", "auto")
 
 
+@suggests_names
 def compress(field: LightField, store: FilePath, *, profile: str = "default", threshold: Optional[float] = None,
              target_psnr: Optional[float] = None, levels: Optional[int] = None, quantizer: str = "8bit",
              entropy: str = "auto", reencode: bool = False, demosaic: str = "none", shard_size: str = "",
@@ -253,10 +256,11 @@ def compress(field: LightField, store: FilePath, *, profile: str = "default", th
     if facts["lf_images_skipped"]:
         first = facts["skipped"][0]
         warnings.warn(f"{_images(facts['lf_images_skipped'])} not in the store, the first: {first['reason']}",
-                      MissingImagesWarning, stacklevel=2)
+                      MissingImagesWarning, stacklevel=caller_level())
     return facts
 
 
+@suggests_names
 def synth(scene: str, folder: FilePath, *, capture: str = "planar", count: Optional[int] = None,
           size: Optional[Tuple[int, int]] = None, spacing: Optional[float] = None, distance: Optional[float] = None,
           jitter: float = 0, format: str = "exr", alpha: str = "none", bayer: bool = False, noise: float = 0,

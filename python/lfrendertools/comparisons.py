@@ -13,6 +13,7 @@ from . import _core, arguments
 from .arguments import FilePath
 from .errors import UsageError
 from .frames import Frame
+from .keywords import suggests_names
 
 _MOST_BORDER, _MOST_PER_DEGREE = 1 << 20, 10000
 _Picture = Union[FilePath, bytes, Frame, npt.ArrayLike]
@@ -73,8 +74,9 @@ class Comparison:
         return f"<Comparison: PSNR {self.psnr:.2f} dB, SSIM {self.ssim:.4f}, FLIP {self.flip:.4f}>"
 
 
+@suggests_names
 def compare(reference: _Picture, test: _Picture, *, border: int = 0, coverage: float = 0,
-            pixels_per_degree: Optional[float] = None, threads: int = 0) -> Comparison:
+            pixels_per_degree: Optional[float] = None, threads: int = 0, any_range: bool = False) -> Comparison:
     """Measure how far a picture is from a reference, as `lfcompare`.
 
     Parameters
@@ -94,6 +96,9 @@ def compare(reference: _Picture, test: _Picture, *, border: int = 0, coverage: f
         with 3840 columns is seen from as far as it is wide.
     threads : int
         Number of threads; 0: one for each processor. The result does not depend on it.
+    any_range : bool
+        True: floats are linear light, even if they look like 8-bit values of a display. By default such arrays are
+        refused, because they would be compared as light up to 255 times as bright as white.
 
     Returns
     -------
@@ -103,6 +108,9 @@ def compare(reference: _Picture, test: _Picture, *, border: int = 0, coverage: f
     ------
     InputError
         A file cannot be read, the sizes differ, or no pixel counts.
+    UsageError
+        An argument is out of range, or an array of floats looks like 8-bit values: from 0 to 255, above 16 somewhere,
+        and either whole numbers or mostly above 4.
 
     Examples
     --------
@@ -113,7 +121,8 @@ def compare(reference: _Picture, test: _Picture, *, border: int = 0, coverage: f
     >>> f"{result.psnr:.2f} dB, {result.pixel_count} pixels"
     '42.11 dB, 3072 pixels'
     """
-    pictures = _picture("reference", reference), _picture("test", test)
+    is_light = arguments.flag("any_range", any_range)
+    pictures = _picture("reference", reference, is_light), _picture("test", test, is_light)
     per_degree = None if pixels_per_degree is None else arguments.within(
         "pixels_per_degree", pixels_per_degree, 1, _MOST_PER_DEGREE)
     name = os.fsencode(test) if isinstance(test, (str, bytes, os.PathLike)) else b"test"
@@ -123,13 +132,28 @@ def compare(reference: _Picture, test: _Picture, *, border: int = 0, coverage: f
     return Comparison(psnr, linear_psnr, ssim, flip, pixels, undefined, flip_map, pictures)
 
 
-def _picture(name: str, source: _Picture) -> _core.PictureLight:
+def _refuse_display_values(name: str, values: npt.NDArray[Any]) -> None:
+    """Refuse floats that are 8-bit values rather than light."""
+    known = values[np.isfinite(values)]
+    if known.size == 0 or known.min() < 0 or not 16 < known.max() <= 255.5:
+        return
+    median = float(np.median(known))
+    if median <= 4 and not np.array_equal(known, np.rint(known)):
+        return
+    raise UsageError(f"{name}: found floats up to {known.max():.4g} with the median {median:.4g}, which look like "
+                     f"values of a display from 0 to 255; expected linear light, in which 1 is white: give them as "
+                     f"{name}.round().astype(np.uint8), or any_range=True if they are light")
+
+
+def _picture(name: str, source: _Picture, is_light: bool) -> _core.PictureLight:
     if isinstance(source, (str, bytes, os.PathLike)):
         return _core.picture_of_file(arguments.file_name(name, source))
     if isinstance(source, Frame):
         return _core.picture_of_array(source.rgb, source.coverage)
     values: npt.NDArray[Any] = np.asarray(source)
     if np.issubdtype(values.dtype, np.floating):
+        if not is_light:
+            _refuse_display_values(name, values)
         values = values.astype(np.float32)
     if values.dtype not in (np.uint8, np.uint16, np.float32):
         raise TypeError(f"{name}: expected a path, a Frame, or an array of uint8, uint16 or floats, found an array of "

@@ -11,12 +11,14 @@ from . import _core, arguments, opening
 from .arguments import FilePath
 from .camera import Camera
 from .camera_path import Path
-from .errors import MissingImagesWarning, UsageError
+from .errors import MissingImagesWarning, UsageError, caller_level
+from .keywords import suggests_names
 from .light_field import LightField
 from .path_arguments import path_in
 from .progress import Progress, checked, telling
 
 
+@suggests_names
 def densify(field: LightField, store: FilePath, path: Union[None, Camera, Path] = None, *, spacing: float = 1.5,
             most: int = 2000, divisor: int = 1, depths: Optional[Tuple[float, float]] = None, force: bool = False,
             resume: bool = False, overwrite: bool = False, strict: bool = False, memory: str = "2G",
@@ -107,5 +109,5 @@ def densify(field: LightField, store: FilePath, path: Union[None, Camera, Path] 
     if facts["skipped"]:
         first = facts["skipped"][0]
         warnings.warn(f"{len(facts['skipped'])} of the LF images are left out, the first: {first['lf_image']}: "
-                      f"{first['reason']}", MissingImagesWarning, stacklevel=2)
+                      f"{first['reason']}", MissingImagesWarning, stacklevel=caller_level())
     return opening.open(store)

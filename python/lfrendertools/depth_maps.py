@@ -12,6 +12,7 @@ from . import _core, arguments
 from .camera import Camera
 from .camera_path import Path
 from .errors import UsageError, warn_of_missing
+from .keywords import suggests_names
 from .light_field import LightField
 from .path_arguments import index_of, path_in
 from .progress import Progress, checked, telling
@@ -65,6 +66,7 @@ class DepthMap:
                 f"{self.image_count} LF images>")
 
 
+@suggests_names
 def depth_map(field: LightField, camera: Union[Camera, Path], *, near: Optional[float] = None,
               far: Optional[float] = None, planes: Optional[int] = None, views: int = 200, window: int = 5,
               confidence: float = 0.5, clean: bool = False, frame: Optional[int] = None, strict: bool = False,
@@ -133,7 +135,7 @@ def depth_map(field: LightField, camera: Union[Camera, Path], *, near: Optional[
             arguments.within("confidence", confidence, 0, 1), arguments.flag("clean", clean),
             arguments.flag("strict", strict),
             arguments.memory(memory), arguments.thread_count(threads), tell)
-    warn_of_missing([reason for _, reason in skipped], stacklevel=3)
+    warn_of_missing([reason for _, reason in skipped])
     return DepthMap(depth, sure, filled, rgb, np.array(distances), images, chosen)
 
 

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from . import _core, arguments
 from .errors import UsageError, warn_of_missing
+from .keywords import suggests_names
 from .light_field import LightField
 
 # In the order of EpipolarLines (lf/analysis/epi/epipolar_picture.h).
@@ -55,6 +56,7 @@ class EpipolarPicture:
         return f"<EpipolarPicture of {self.rgb.shape[0]} lines of {self.rgb.shape[1]} pixels, {self.lines}>"
 
 
+@suggests_names
 def epi(field: LightField, *, row: Optional[int] = None, column: Optional[int] = None,
         through: Union[None, int, str] = None, focus_distance: Optional[float] = None, lines: str = "auto",
         count: Optional[int] = None, tolerance: Optional[float] = None, strict: bool = False,
@@ -117,7 +119,7 @@ def epi(field: LightField, *, row: Optional[int] = None, column: Optional[int] =
     rgb, positions, ids, made, focal_px, direction, rotation, missing = _core.epi(
         field._core, row is not None, pixel, _id_of(field, through), within, focus, kind, chosen,
         arguments.flag("strict", strict), arguments.thread_count(threads))
-    warn_of_missing(missing, stacklevel=3)
+    warn_of_missing(missing)
     return EpipolarPicture(rgb, np.array(positions), np.array(ids), _LINES[made], focal_px, direction, rotation)
 
 

@@ -2,6 +2,8 @@
 """The exceptions of this package. Each has the exit code with which the programs report the same error."""
 from __future__ import annotations
 
+import inspect
+import os
 import warnings
 from typing import Sequence
 
@@ -60,9 +62,17 @@ class UncertainFocusWarning(UserWarning):
     """The distance of the subject is not sure, so that a camera of the light field is almost a pinhole."""
 
 
-def warn_of_missing(reasons: Sequence[str], stacklevel: int) -> None:
+def caller_level() -> int:
+    """Return the stacklevel with which warnings.warn() names the line that called this package."""
+    frame, level, package = inspect.currentframe(), 0, os.path.dirname(__file__)
+    while frame and os.path.dirname(frame.f_code.co_filename) == package:
+        frame, level = frame.f_back, level + 1
+    return level
+
+
+def warn_of_missing(reasons: Sequence[str]) -> None:
     """Warn if LF images were left out, for these reasons."""
     if reasons:
         were = "1 LF image was" if len(reasons) == 1 else f"{len(reasons)} LF images were"
         warnings.warn(f"{were} left out, the first: {reasons[0]}" if len(reasons) > 1 else
-                      f"{were} left out: {reasons[0]}", MissingImagesWarning, stacklevel=stacklevel)
+                      f"{were} left out: {reasons[0]}", MissingImagesWarning, stacklevel=caller_level())

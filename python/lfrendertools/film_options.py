@@ -10,6 +10,7 @@ from typing import Any, Dict, Mapping, NamedTuple
 
 from . import _core, arguments
 from .errors import UsageError
+from .keywords import suggestion
 
 
 class _Setting(NamedTuple):
@@ -52,5 +53,6 @@ def film_words(options: Mapping[str, Any], own: Dict[str, Any]) -> Dict[str, str
         elif name in _SETTINGS:
             words[name] = _SETTINGS[name].text(value)
         else:
-            raise UsageError(f"unknown option {name}: expected one of {', '.join(sorted([*own, *_SETTINGS]))}")
+            known = sorted([*own, *_SETTINGS])
+            raise UsageError(f"unknown option {name}{suggestion(name, known)}: expected one of {', '.join(known)}")
     return words

@@ -39,7 +39,11 @@ class Frame:
 
     @property
     def rgb(self) -> npt.NDArray[np.float32]:
-        """Linear light with sRGB primaries, of shape (height, width, 3); 1 is display white."""
+        """Linear light with sRGB primaries, of shape (height, width, 3); 1 is display white.
+
+        Shown as it is, by a plot or in a window, linear light looks too dark: :meth:`display` returns the values for a
+        display, such as `plt.imshow(frame.display())`.
+        """
         return self._core.rgb
 
     @property

@@ -9,6 +9,7 @@ from .camera import Camera
 from .camera_path import Path
 from .errors import UsageError, warn_of_missing
 from .frames import Frame
+from .keywords import suggests_names
 from .light_field import LightField
 from .path_arguments import index_of, path_in
 from .progress import Progress, checked, telling
@@ -18,6 +19,7 @@ _FILTERS = ("auto", "nearest", "bilinear", "bicubic", "prefiltered")
 _TRIM = 0.25
 
 
+@suggests_names
 def through(field: LightField, camera: Union[Camera, Path], statistic: str = "median", trim: float = _TRIM,
             order: str = "channels", *, frame: Optional[int] = None, filter: str = "auto", lf_pixels: str = "auto",
             max_angle_deg: Optional[float] = None, strict: bool = False, memory: str = "8G", threads: int = 0,
@@ -106,5 +108,5 @@ def through(field: LightField, camera: Union[Camera, Path], statistic: str = "me
             arguments.choice("order", order, ("channels", "luminance")), arguments.choice("filter", filter, _FILTERS),
             arguments.choice("lf_pixels", lf_pixels, ("auto", "areas", "points")), angle,
             arguments.flag("strict", strict), arguments.memory(memory), arguments.thread_count(threads), tell)
-    warn_of_missing([reason for _, reason in skipped], stacklevel=3)
+    warn_of_missing([reason for _, reason in skipped])
     return Frame(made)

@@ -18,7 +18,8 @@ from .arguments import FilePath
 from .camera import Camera
 from .camera_path import Path as CameraPath
 from .display import display_values
-from .errors import Error, UncertainFocusWarning, UsageError
+from .errors import Error, UncertainFocusWarning, UsageError, caller_level
+from .keywords import suggests_names
 from .reading import loaded_ahead
 from .rig import Grid, find_grid, plot_of_rig
 
@@ -188,6 +189,7 @@ class LightField:
         directions = self._core.ray_directions(i, rows).reshape(*shape, 3)
         return np.broadcast_to(self.centres[i], directions.shape), directions
 
+    @suggests_names
     def image(self, i: int, rect: Optional[Tuple[int, int, int, int]] = None, masked: float = float("nan"), *,
               stored: bool = False) -> npt.NDArray[Any]:
         """Load an LF image as linear light, with the values that a render reads, or as its file stores it.
@@ -226,6 +228,7 @@ class LightField:
             return values if part is None else values[_part_of(values, part)]
         return self._core.image(i, part, arguments.real("masked", masked))
 
+    @suggests_names
     def images(self, ids: Optional[Iterable[int]] = None, ahead: int = 8, *, masked: float = float("nan"),
                stored: bool = False, strict: bool = False) -> Iterator[Tuple[int, npt.NDArray[Any]]]:
         """Load LF images one after the other. Other threads load the next ones in advance.
@@ -265,6 +268,7 @@ class LightField:
         """
         return find_grid(self.centres, self.cam_from_world)
 
+    @suggests_names
     def array(self, views: Optional[Tuple[int, int]] = None, reduce: int = 1, out: Any = None, *,
               strict: bool = False) -> Any:
         """Load LF images of a grid into one array.
@@ -333,6 +337,7 @@ class LightField:
             out[places[i]] = np.nan
         return out
 
+    @suggests_names
     def path(self, move: str = "auto", *, start: Optional[int] = None,
              focus_distance: Optional[float] = None) -> CameraPath:
         """Return the camera path that `lfexample` writes, as a path to start from.
@@ -378,7 +383,7 @@ class LightField:
         if doubt:
             warnings.warn(f"{self._source}: the focus distance is not sure, so that the camera is almost a pinhole: "
                           f"{doubt}; state the distance of the subject as focus_distance=", UncertainFocusWarning,
-                          stacklevel=3)
+                          stacklevel=caller_level())
 
     @functools.cached_property
     def _first_example(self) -> Tuple[CameraPath, str]:

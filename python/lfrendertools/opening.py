@@ -9,6 +9,7 @@ from typing import Any, Optional, Sequence, Tuple, Union
 
 from . import _core, arguments
 from .arguments import FilePath
+from .keywords import suggests_names
 from .light_field import LightField
 
 _URL = re.compile("[A-Za-z][A-Za-z0-9+.-]*://")
@@ -16,6 +17,7 @@ _LAYOUTS = ("", "mosaic", "quilt", "lenslets")
 _ALPHAS = ("auto", "mask", "straight", "premultiplied")
 
 
+@suggests_names
 def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[float] = None,
          images: Optional[FilePath] = None, image_scale: str = "auto", image_alpha: str = "auto",
          background: str = "", pitch: Union[None, float, Tuple[float, float]] = None,

@@ -9,6 +9,8 @@ from typing import Any, Callable, Iterator, Optional, Tuple, Union
 
 import numpy as np
 
+from .errors import caller_level
+
 # A function that is called with the number of steps that are done, and with their total number: LF images, unless the
 # description of the caller says otherwise.
 Tell = Callable[[int, int], None]
@@ -45,7 +47,7 @@ def checked(progress: Progress) -> Progress:
         raise TypeError(f"progress={progress!r}: expected True, False or a function of two numbers")
     if isinstance(progress, (bool, np.bool_)) and progress and not _has_tqdm():
         warnings.warn("progress=True shows nothing, because tqdm is not installed: give a function instead",
-                      stacklevel=3)
+                      stacklevel=caller_level())
         return None
     return progress
 

@@ -54,4 +54,4 @@ def loaded_ahead(ids: Iterator[int], load: Callable[[int], npt.NDArray[Any]], ah
         finally:
             for _, future in loading:
                 future.cancel()
-    warn_of_missing(reasons, stacklevel=3)
+    warn_of_missing(reasons)

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from . import _core, arguments
 from .camera import Camera
 from .camera_path import Path
-from .errors import BlackFrameWarning, UsageError, warn_of_missing
+from .errors import BlackFrameWarning, UsageError, caller_level, warn_of_missing
 from .film_options import film_words
 from .frames import Frame, Plate
 from .light_field import LightField
@@ -327,7 +327,7 @@ def _frames_of(sequence: _Film, progress: Progress) -> Iterator[Tuple[int, Frame
                 sequence.core.release(f)
                 if frame.image_count == 0 and frame.interpolated is None:
                     warnings.warn(f"frame {frame.number} is black: no recorded ray passes its lens",
-                                  BlackFrameWarning, stacklevel=2)
+                                  BlackFrameWarning, stacklevel=caller_level())
                 yield frame.number, frame
             sequence.warn_of_missing()
 
@@ -420,4 +420,4 @@ class _Film:
     def warn_of_missing(self) -> None:
         missing = [(name, reason) for name, reason in self.core.skipped() if name not in self._warned]
         self._warned += [name for name, _ in missing]
-        warn_of_missing([reason for _, reason in missing], stacklevel=4)
+        warn_of_missing([reason for _, reason in missing])

@@ -17,6 +17,7 @@ from . import _core, arguments
 from .arguments import FilePath
 from .display import display_values
 from .errors import OutputError, UsageError, warn_of_missing
+from .keywords import suggests_names
 from .light_field import LightField
 from .progress import Progress, checked, telling
 
@@ -60,6 +61,7 @@ class Views:
         return f"<Views of {columns} columns and {rows} rows, {int((self.ids < 0).sum())} of them rendered>"
 
 
+@suggests_names
 def views(field: LightField, grid: Tuple[int, int], *, focus_distance: Optional[float] = None, values: str = "linear",
           out: Any = None, file: Optional[FilePath] = None, memory: str = "8G", strict: bool = False,
           threads: int = 0, progress: Progress = None) -> Views:
@@ -133,7 +135,7 @@ def views(field: LightField, grid: Tuple[int, int], *, focus_distance: Optional[
             distance, missing = _core.make_views(
                 field._core, columns, rows, focus, arguments.memory(memory), arguments.flag("strict", strict),
                 arguments.thread_count(threads), put, tell)
-    warn_of_missing(missing, stacklevel=3)
+    warn_of_missing(missing)
     return dataclasses.replace(made, array=None if file is not None else target, focus_distance=distance)
 
 

@@ -282,3 +282,33 @@ def test_threads_share_a_renderer(field, path):
     # One step reads all LF images. A frame has them either all or not at all.
     assert all(count in (0, frame.image_count) for count, frame in zip(counts, whole))
     assert all(np.array_equal(renderer.preview(i).rgb, frame.rgb) for i, frame in enumerate(whole))
+
+
+def test_a_misspelt_argument_is_told_with_the_nearest(field, path):
+    camera = field.camera(focus_distance=1)
+    for call, told in (
+            (lambda: lf.Camera((0, 0, 0), focal_lenght_mm=50), "Camera(): unknown argument focal_lenght_mm; did you "
+                                                               "mean focal_length_mm?"),
+            (lambda: lf.Camera((0, 0, 0), focal_length=50), "did you mean focal_length_mm?"),
+            (lambda: camera.replace(focus_distanc=2), "did you mean focus_distance?"),
+            (lambda: field.camera(fnumber=2), "did you mean f_number?"),
+            (lambda: field.path("orbit", focus_dist=2), "LightField.path(): unknown argument focus_dist; did you mean "
+                                                        "focus_distance?"),
+            (lambda: lf.Path([camera], fsp=25), "Path(): unknown argument fsp; did you mean fps?"),
+            (lambda: lf.Path.load("no.yaml", unitm=1), "Path.load(): unknown argument unitm; did you mean unit_m?"),
+            (lambda: lf.open("no", recorded_fsp=25), "open(): unknown argument recorded_fsp; did you mean "
+                                                     "recorded_fps?"),
+            (lambda: lf.views(field, (2, 2), focus=1), "did you mean focus_distance?"),
+            (lambda: lf.Camera((0, 0, 0), xyzzy=1), "Camera(): unknown argument xyzzy")):
+        with pytest.raises(TypeError) as error:
+            call()
+        assert str(error.value).endswith(told), error.value
+    with pytest.raises(lf.UsageError, match="unknown option max_imges; did you mean max_images[?]: expected"):
+        lf.render(field, camera, max_imges=3)
+
+
+def test_a_warning_names_the_line_of_the_caller(field, tmp_path):
+    path = lf.Path([field.camera(focus_distance=1)])
+    with pytest.warns(UserWarning, match="no place for") as told:
+        path.save(tmp_path / "path.json")
+    assert [warning.filename for warning in told] == [__file__]

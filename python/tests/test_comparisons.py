@@ -123,3 +123,32 @@ def test_wrong_arguments_are_named(frames, tmp_path):
         result.picture("psnr")
     with pytest.raises(lf.UsageError, match="gain=0"):
         result.picture("difference", 0)
+
+
+def test_floats_that_look_like_values_of_a_display_are_asked_about():
+    noise = np.random.default_rng(1)
+    whole = noise.integers(0, 256, (24, 32, 3)).astype(np.float32)
+    blurred = (whole + whole[::-1]) / 2 + np.float32(0.25)
+    light = lf.compare(np.zeros((24, 32, 3), np.uint8), np.zeros((24, 32, 3), np.uint8))
+    assert light.psnr == math.inf
+    for values in (whole, blurred, whole.astype(np.float64), whole[..., 0]):
+        grey = np.full(values.shape, 128, np.uint8)
+        for pictures, name in (((grey, values), "test"), ((values, grey), "reference")):
+            with pytest.raises(lf.UsageError) as told:
+                lf.compare(*pictures)
+            for words in (f"{name}: found floats up to 25", "linear light", f"{name}.round().astype(np.uint8)",
+                          "any_range=True"):
+                assert words in str(told.value)
+            lf.compare(*pictures, any_range=True)
+    # The remedy of the message.
+    assert lf.compare(whole.round().astype(np.uint8), whole.astype(np.uint8)).psnr == math.inf
+
+
+def test_bright_light_is_not_asked_about():
+    light = np.random.default_rng(1).random((24, 32, 3), np.float32)
+    for values in (light, 255 * light ** 8, 16 * light, 1000 * light, light - np.float32(0.1),
+                   np.full_like(light, math.nan)):
+        try:
+            lf.compare(values, values)
+        except lf.InputError:
+            assert np.isnan(values).all()  # no pixel counts
