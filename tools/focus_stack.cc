@@ -124,6 +124,7 @@ void AddOutput(CLI::App& app, Arguments& a) {
       .Add("--fps RATE", a.fps,
            "Planes per second of a video (as PATH states)\n"
            "Used by -o FILE.mp4 and --video.")
+      ->transform(Rate())
       ->check(CLI::Range(1e-3, 1e3));
   output.AddFlag("--back-and-forth", a.back_and_forth,
                  "Let FILE.mp4 also show the planes backwards\n"

@@ -5,7 +5,6 @@
 
 #include <filesystem>
 #include <functional>
-#include <iostream>
 #include <optional>
 #include <string>
 #include <utility>
@@ -174,10 +173,7 @@ int main(int argc, char** argv) {
                      : "contact_sheet.png";
     lf::SummariseRender(report, look_at.string(),
                         arguments.settings.Word("lens_weights") == "auto");
-    if (common.json && !(std::cout << lf::ToJson(report) << std::flush))
-      return lf::OutputError(
-          "--json: the report cannot be written to stdout: is the disk full, or was the pipe "
-          "closed?");
+    if (common.json) LF_RETURN_IF_ERROR(lf::PrintReport(lf::ToJson(report)));
     return lf::OutcomeOf(report, rendered.options.film, arguments.allow_missing, rendered.missing);
   });
 }

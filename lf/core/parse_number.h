@@ -28,6 +28,16 @@ inline std::optional<double> ParseNumber(std::string_view text) {
   return value;
 }
 
+// Returns the rate if the whole of `text` is a number, or a fraction of two numbers, as video
+// programs write rates: "23.976", "24000/1001". Otherwise nullopt.
+inline std::optional<double> ParseRate(std::string_view text) {
+  const size_t bar = text.find('/');
+  if (bar == std::string_view::npos) return ParseNumber(text);
+  const auto above = ParseNumber(text.substr(0, bar)), below = ParseNumber(text.substr(bar + 1));
+  if (!above || !below || *below == 0) return std::nullopt;
+  return std::isfinite(*above / *below) ? std::optional(*above / *below) : std::nullopt;
+}
+
 // Returns the number if the whole of `text` consists of decimal digits, with a minus before them if
 // it is negative, and the number fits into the type, otherwise nullopt.
 template <std::integral Whole>

@@ -17,6 +17,14 @@ TEST(ParseNumber, TakesWholeFiniteDecimalNumbersOnly) {
     EXPECT_FALSE(ParseNumber(text)) << text;
 }
 
+TEST(ParseRate, TakesNumbersAndFractions) {
+  EXPECT_EQ(ParseRate("23.976"), 23.976);
+  EXPECT_EQ(ParseRate("24000/1001"), 24000.0 / 1001);
+  EXPECT_EQ(ParseRate("25/1"), 25);
+  for (const char* text : {"", "/", "24/", "/1001", "24/0", "24/1/1", "24 / 1", "1e300/1e-300"})
+    EXPECT_FALSE(ParseRate(text)) << text;
+}
+
 TEST(ParseWhole, TakesWholeDecimalNumbersThatFitOnly) {
   EXPECT_EQ(ParseWhole<uint32_t>("0"), 0u);
   EXPECT_EQ(ParseWhole<uint32_t>("010"), 10u);

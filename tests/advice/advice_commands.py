@@ -158,6 +158,9 @@ SITUATIONS = [
     # Jobs.
     Situation(("run_job: each; to see the progress",), "lfsubmit packages/*.lfp -o film", "lfsubmit --status",
               promise=same_film(FILM, "film")),
+    Situation(("job_table: to continue: ",), "lfsubmit --status film", "lfsubmit --resume",
+              before="lfsubmit packages/*.lfp -o film -q && rm film/frame_0001.exr",
+              promise=same_film(FILM, "film")),
     Situation(("resume_job: or continue it",), "lfsubmit packages/*.lfp -o film", "lfsubmit --resume",
               before="lfsubmit packages/*.lfp -o film -q && rm film/frame_0001.exr", code=2,
               promise=same_film(FILM, "film")),

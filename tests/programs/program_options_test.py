@@ -6,8 +6,10 @@ scanned.
 usage: program_options_test.py FOLDER_OF_THE_PROGRAMS
 """
 import json
+import os
 import pathlib
 import re
+import signal
 import subprocess
 import sys
 import unittest
@@ -86,6 +88,57 @@ class ProgramOptionsTest(ProgramTestCase):
             done = self.call(*words)
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(f"error: {name}: expected a value", done.stderr)
+
+    def test_an_unknown_option_is_told_with_the_nearest(self):
+        for name, words, told in (("lfrenderer", ["a", "b", "-o", "c", "--formt", "png"], "--formt"),
+                                  ("lfrenderer", ["--formt=png"], "--formt"),
+                                  ("lfrenderer", ["a", "b", "-o", "c", "-format", "png"], "-format")):
+            last = self.call(name, *words).stderr.splitlines()[-1]
+            self.assertEqual(last, f"error: {told}: unknown option; did you mean --format?")
+        for name in OFFERED:
+            with self.subTest(program=name):
+                done = self.call(name, *CALLS.get(name, ["no", "no", "-o", "no"]), "--hlep")
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertEqual(done.stderr.splitlines()[-1], "error: --hlep: unknown option; did you mean --help?")
+                last = self.call(name, *CALLS.get(name, ["no", "no", "-o", "no"]), "--xyzzyxyzzy").stderr
+                self.assertEqual(last.splitlines()[-1], "error: --xyzzyxyzzy: unknown option")
+
+    def test_minus_zero_is_a_number(self):
+        for words in (["-0", "1", "2"], ["1", "-0.0", "2"], ["-.5", "-0", "-1e-3"], ["-0e0", "-1.", "0"]):
+            last = self.call("lfrenderer", "no", "no", "-o", "no", "--slab-position", *words).stderr
+            self.assertIn("no: no such file", last.splitlines()[-1])
+        for words in (["--max-images", "-0"], ["--max-images=-0"], ["--beta", "-0.0"]):
+            last = self.call("lfrenderer", "no", "no", "-o", "no", *words).stderr
+            self.assertIn("no: no such file", last.splitlines()[-1])
+
+    def call_with_closed_pipe(self, name, *words, ignored=False):
+        """Calls a program whose output nobody reads. Returns its status and what it says."""
+        read, write = os.pipe()
+        os.close(read)
+        program, *command = name.split()
+        try:
+            done = subprocess.run([BIN / program, *command, *words], stdout=write, stderr=subprocess.PIPE, text=True,
+                                  restore_signals=not ignored, timeout=100)
+        finally:
+            os.close(write)
+        return done.returncode, done.stderr
+
+    def test_a_reader_that_has_read_enough_is_no_error(self):
+        for name in OFFERED:
+            with self.subTest(program=name):
+                for word in ("--help", "--help-all", "--version"):
+                    code, said = self.call_with_closed_pipe(name, word)
+                    self.assertEqual((code, said), (-signal.SIGPIPE, ""))
+        path = small_field.write_path(self.folder)
+        self.assertEqual(self.call_with_closed_pipe("lfcammvminfo", path, "--csv"), (-signal.SIGPIPE, ""))
+        # A parent that ignores SIGPIPE wants to hear of it, as of a full disk.
+        code, said = self.call_with_closed_pipe("lfcammvminfo", path, "--csv", ignored=True)
+        self.assertEqual(code, 4)
+        self.assertIn("its reader has ended", said.splitlines()[-1])
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            done = subprocess.run([BIN / "lfcammvminfo", path, "--csv"], stdout=full, stderr=subprocess.PIPE, text=True)
+        self.assertEqual(done.returncode, 4)
+        self.assertIn("No space left on device", done.stderr)
 
     def test_all_programs_are_listed(self):
         programs = {path.name for path in BIN.iterdir() if path.name.startswith("lf")}

@@ -120,6 +120,11 @@ TEST(Program, WholeNumbersAreDecimalAndFit) {
   word = "-010";
   EXPECT_EQ(WholeNumber()(word), "");
   EXPECT_EQ(word, "-10");
+  for (word = "-0"; const auto& number : {WholeNumber(), WholeNumberFromZero()}) {
+    EXPECT_EQ(number(word), "");
+    EXPECT_EQ(word, "0");
+    word = "-00";
+  }
   for (std::string wrong : {"", "-1", "a", "1.5", "18446744073709551616", "0x10", "+5", " 5", "5 "})
     EXPECT_NE(WholeNumberFromZero()(wrong).find("expected a whole number"), std::string::npos)
         << wrong;
@@ -128,6 +133,17 @@ TEST(Program, WholeNumbersAreDecimalAndFit) {
   for (std::string good : {"1", "-1.5e-3", "+.5", "1."}) EXPECT_EQ(Number()(good), "") << good;
   std::string empty;
   EXPECT_NE(NotEmpty()(empty), "");
+}
+
+TEST(Program, AFractionIsARate) {
+  std::string word = "24000/1001";
+  EXPECT_EQ(Rate()(word), "");
+  EXPECT_EQ(word, "23.976023976023978");
+  word = "29.970";
+  EXPECT_EQ(Rate()(word), "");
+  EXPECT_EQ(word, "29.970");
+  word = "24/0";
+  EXPECT_NE(Rate()(word), "");
 }
 
 class HelpTest : public testing::Test {

@@ -37,6 +37,7 @@ void AddUnusualOptions(CLI::App& app, LightFieldArgument& argument) {
       .Add("--recorded-fps FPS", argument.recorded_fps,
            "Frames per second of a light field video (30)\n"
            "For folders of frames, which do not state it. Videos state it themselves.")
+      ->transform(Rate())
       ->check(CLI::Range(1e-6, 1e6));
   unusual.Add(
       "--frame-cache DIR", argument.frame_cache,

@@ -5,6 +5,10 @@
 
 #include <regex>
 #include <string_view>
+#include <vector>
+
+#include "lf/camera/path/spelling.h"
+#include "lf/core/parse_number.h"
 
 namespace lf {
 namespace {
@@ -27,6 +31,29 @@ std::string HiddenOption(const CLI::App& app, int argc, const char* const* argv)
     for (const CLI::Option* option : app.get_options())
       if (option->get_group().empty() && option->check_name(argv[i])) return argv[i];
   return {};
+}
+
+// Returns a message about the first word that begins with a dash and is neither an option nor a
+// number; "" if there is none. Other errors of CLI11 may be its consequence: in "-o a --formt", a
+// missing argument.
+std::string UnknownOptionText(const CLI::App& app, int argc, const char* const* argv) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  for (int i = 1; i < argc && std::string_view(argv[i]) != "--"; ++i) {
+    const std::string word = argv[i], name = word.substr(0, word.find('='));
+    if (!word.starts_with("-") || word == "-" || ParseNumber(word)) continue;
+    const CLI::Option* const before = i > 1 ? app.get_option_no_throw(argv[i - 1]) : nullptr;
+    if (before != nullptr && before->get_items_expected_max() > 0) continue;  // may be its value
+    // One dash may be followed by several letters, and by a value: "-vo a".
+    const bool is_short = !word.starts_with("--");
+    if (app.get_option_no_throw(is_short ? word.substr(0, 2) : name) != nullptr) continue;
+    // "-format" is what "--format" was meant to be.
+    const std::string nearest = NearestWord(is_short ? "-" + name : name, names);
+    return fmt::format("{}: unknown option{}", name,
+                       nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest));
+  }
+  return "";
 }
 
 // Returns the option and its placeholder, such as "--grid COLUMNSxROWS".
@@ -60,6 +87,11 @@ std::string Found(const std::string& word) {
 std::string ParseErrorText(const CLI::App& app, const CLI::ParseError& error, int argc,
                            const char* const* argv) {
   std::string text = error.what();
+  for (const CLI::ExitCodes code : {CLI::ExitCodes::ExtrasError, CLI::ExitCodes::RequiredError,
+                                    CLI::ExitCodes::ArgumentMismatch}) {
+    if (error.get_exit_code() != static_cast<int>(code)) continue;
+    if (std::string unknown = UnknownOptionText(app, argc, argv); !unknown.empty()) return unknown;
+  }
   if (text.starts_with(": ")) text = HiddenOption(app, argc, argv) + text;
   std::smatch part;
   static const std::regex range("(.+): Value (.*) not in range .+ to .+");
@@ -78,7 +110,8 @@ std::string ParseErrorText(const CLI::App& app, const CLI::ParseError& error, in
     if (limits.empty()) limits = part[3];
     // A list that is written in another form is one word for CLI11, which takes the next option for
     // its second number.
-    const bool is_list = usage.find_first_of("x,") != std::string::npos;
+    const std::string_view placeholder = std::string_view(usage).substr(usage.rfind(' ') + 1);
+    const bool is_list = placeholder.find_first_of("x,") != std::string::npos;
     if (is_list && word.starts_with("-")) word = WordOf(part[1], argc, argv);
     return fmt::format("{}: expected {}{}{}{}, {}", usage, is_list ? "" : "a ", whole,
                        is_list ? "numbers" : "number", limits, Found(word));

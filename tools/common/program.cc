@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/common/program.h"
 
+#include <fmt/format.h>
 #include <malloc.h>
+#include <poll.h>
 #include <signal.h>
+#include <unistd.h>
 
+#include <atomic>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <iostream>
 #include <memory>
 #include <system_error>
@@ -31,16 +37,35 @@ int Refuse(const CLI::App& app, const std::string& message) {
   return static_cast<int>(ErrorKind::kUsage);
 }
 
+// True if the reader of the standard output, such as "head", has ended.
+std::atomic<bool> was_reader_gone = false;
+
+bool IsReaderGone() {
+  pollfd output = {.fd = STDOUT_FILENO, .events = POLLOUT, .revents = 0};
+  return ::poll(&output, 1, 0) == 1 && (output.revents & (POLLERR | POLLHUP)) != 0;
+}
+
+// Ends the program as SIGPIPE would have ended it, without a word and as other programs do: a
+// reader that has read enough is no error.
+void EndByClosedPipe() {
+  ::signal(SIGPIPE, SIG_DFL);
+  ::raise(SIGPIPE);
+}
+
 }  // namespace
 
 Result<void> PrintReport(const std::string& text) {
   std::cout.flush();  // CLI11 prints to std::cout
+  errno = 0;
   if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0 &&
       std::cout.good())
     return {};
-  return OutputError(
-      "the report cannot be written to the standard output: is the disk full, or was the "
-      "pipe closed?");
+  if (errno == EPIPE || IsReaderGone()) {
+    was_reader_gone = true;
+    return OutputError("the standard output cannot be written: its reader has ended");
+  }
+  return OutputError(fmt::format("the report cannot be written to the standard output: {}",
+                                 errno == 0 ? "is the disk full?" : std::strerror(errno)));
 }
 
 Program::Program(std::string name, const HelpTexts& texts)
@@ -103,8 +128,9 @@ int Program::Run(int argc, char** argv, const std::function<Result<void>()>& bod
   StartProcess();
   SetSpeller(CommandLineOption);
   SetCallOfProgram({argv, argv + argc});
-  // A closed pipe or a file size limit must be an error of the write and not end the program.
-  ::signal(SIGPIPE, SIG_IGN);
+  // A closed pipe or a file size limit must be an error of the write and not end the program, which
+  // may have other work to do, and files to complete.
+  const bool ends_by_pipe = ::signal(SIGPIPE, SIG_IGN) != SIG_IGN;
   ::signal(SIGXFSZ, SIG_IGN);
   try {
     app_.parse(argc, argv);
@@ -112,6 +138,7 @@ int Program::Run(int argc, char** argv, const std::function<Result<void>()>& bod
     const int code = app_.exit(help_or_version);
     const Result<void> printed = PrintReport("");
     if (printed) return code;
+    if (was_reader_gone && ends_by_pipe) EndByClosedPipe();
     LogMessage(LogLevel::kError, printed.error().message);
     return static_cast<int>(printed.error().kind);
   } catch (const CLI::ParseError& error) {
@@ -124,6 +151,7 @@ int Program::Run(int argc, char** argv, const std::function<Result<void>()>& bod
     const Result<void> result = body();
     TellFarmTheEnd(ParseProgressStyle(common_.progress), result);
     if (!result) {
+      if (was_reader_gone && ends_by_pipe) EndByClosedPipe();
       LogMessage(LogLevel::kError, result.error().message);
       return static_cast<int>(result.error().kind);
     }

@@ -74,7 +74,8 @@ class Program {
   bool quiet_ = false;
 };
 
-// Prints a whole report to stdout. kOutput if that fails.
+// Prints a whole report to stdout. kOutput if that fails. If its reader has ended, such as "head",
+// Program::Run() then ends the program by SIGPIPE, without a message, once `body` has returned.
 Result<void> PrintReport(const std::string& text);
 
 }  // namespace lf

@@ -14,6 +14,8 @@ CLI::Validator Number();
 // CLI11 would read an octal number.
 CLI::Validator WholeNumber();
 CLI::Validator WholeNumberFromZero();
+// Accepts a rate, and turns a fraction such as 24000/1001 into a number; for transform().
+CLI::Validator Rate();
 // Accepts a word that is not empty.
 CLI::Validator NotEmpty();
 

@@ -70,6 +70,15 @@ std::vector<std::string> Row(const TaskStatus& task, bool is_package) {
       MessageOf(task)};
 }
 
+// Returns true if the job is not done, and continues only if it is resumed.
+bool Rests(const ClusterJob& job, const JobStatus& status) {
+  const bool has_tasks = std::any_of(status.packages.begin(), status.packages.end(),
+                                     [](const TaskStatus& task) { return task.IsQueued(); });
+  if (has_tasks || status.finishing.IsQueued()) return false;
+  if (status.phase == TaskPhase::kWaiting) return job.engine == ClusterEngine::kLocal;
+  return status.phase == TaskPhase::kInterrupted || status.phase == TaskPhase::kFailed;
+}
+
 }  // namespace
 
 std::string JobSummary(const JobStatus& status) {
@@ -118,6 +127,7 @@ std::string JobTable(const ClusterJob& job, const JobStatus& status) {
     line.erase(line.find_last_not_of(' ') + 1);
     text += line + "\n";
   }
+  if (Rests(job, status)) text += "to continue: " + ResumeCommand(job) + "\n";
   return text;
 }
 

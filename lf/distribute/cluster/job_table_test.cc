@@ -48,6 +48,19 @@ TEST_F(JobTableTest, EachTaskHasARow) {
   EXPECT_EQ(table.find("LF images"), std::string::npos) << "an empty column\n" << table;
 }
 
+TEST_F(JobTableTest, AJobThatRestsSaysHowToContinue) {
+  const std::string advice = "\nto continue: lfsubmit --resume frames\n";
+  EXPECT_EQ(JobTable(job_, status_).find("to continue"), std::string::npos);
+  for (const TaskPhase phase : {TaskPhase::kInterrupted, TaskPhase::kFailed, TaskPhase::kWaiting}) {
+    status_.phase = phase;
+    EXPECT_TRUE(JobTable(job_, status_).ends_with(advice)) << JobTable(job_, status_);
+  }
+  job_.engine = ClusterEngine::kSlurm;
+  EXPECT_EQ(JobTable(job_, status_).find("to continue"), std::string::npos) << "waits for Slurm";
+  status_.phase = TaskPhase::kDone;
+  EXPECT_EQ(JobTable(job_, status_).find("to continue"), std::string::npos);
+}
+
 TEST_F(JobTableTest, SlurmIsTranslated) {
   job_.engine = ClusterEngine::kSlurm;
   job_.slurm_array_ids = {"7", "9"};

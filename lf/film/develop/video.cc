@@ -16,6 +16,7 @@
 
 #include "lf/core/child_process.h"
 #include "lf/core/file.h"
+#include "lf/core/log.h"
 #include "lf/core/temporary_file.h"
 #include "lf/film/develop/file_inputs.h"
 
@@ -26,7 +27,7 @@ namespace {
 // Returns the frame rate as text for ffmpeg. A rate of television, N * 1000 / 1001, becomes this
 // fraction even if it is rounded to two decimals or more: 29.97 becomes 30000/1001, and 23.976 and
 // 23.98 become 24000/1001. Other rates, such as 24.97, stay as they are.
-std::string FrameRate(double fps) {
+std::string RateForFfmpeg(double fps) {
   for (const int rate : {24, 30, 48, 60, 120, 240}) {
     const double exact = rate * 1000.0 / 1001;
     // Three decimals or more differ by a millionth at most, because 1000 / 1001 is 0.999 + 1e-6.
@@ -42,7 +43,7 @@ constexpr const char* kConversion =
     "format=yuv420p";
 
 std::vector<std::string> EncoderArguments(const fs::path& file, int width, int height, double fps) {
-  const std::string rate = FrameRate(fps);
+  const std::string rate = RateForFfmpeg(fps);
   return {"ffmpeg", "-hide_banner", "-nostats", "-loglevel", "error", "-y",  //
           "-f", "rawvideo", "-pixel_format", "rgb24", "-video_size",
           fmt::format("{}x{}", width, height),
@@ -177,6 +178,19 @@ Result<void> ReadBack(const fs::path& file, size_t picture_count, double patienc
                                  answer.complaints.substr(0, answer.complaints.find('\n'))));
 }
 
+void WarnOfOddSize(const fs::path& path, int width, int height) {
+  const bool loses_column = width % 2 != 0, loses_row = height % 2 != 0;
+  if (!loses_column && !loses_row) return;
+  LogWarning(
+      "{}: the last {} of each picture {} missing in the video, because videos have even sizes: it "
+      "has {} x {} pixels, and the pictures {} x {}",
+      path.string(),
+      !loses_row      ? "column"
+      : !loses_column ? "row"
+                      : "column and the last row",
+      loses_row && loses_column ? "are" : "is", width / 2 * 2, height / 2 * 2, width, height);
+}
+
 }  // namespace
 
 VideoWriter::VideoWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -194,6 +208,7 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::Open(const fs::path& path, int
         "{}: a video of {} x {} pixels at {} frames per second cannot be written: expected at "
         "least 2 x 2 pixels and 0.001 to 1000000 frames per second",
         path.string(), width, height, fps));
+  WarnOfOddSize(path, width, height);
   auto state = std::make_unique<State>();
   state->path = path;
   const fs::path unfinished =

@@ -24,9 +24,9 @@ Result<void> CheckVideoTarget(const std::filesystem::path& path,
                               std::string_view option = "{video}");
 
 // Writes an mp4 (H.264, yuv420p, sRGB tagged as BT.709) of 8-bit sRGB pictures, frame by frame. An
-// odd width or height is cropped by one pixel, because yuv420p needs even ones. The file appears
-// under its name when it is complete and has been read back. One thread at a time may use a
-// VideoWriter.
+// odd width or height is cropped by one pixel, with a warning, because yuv420p needs even ones. The
+// file appears under its name when it is complete and has been read back. One thread at a time may
+// use a VideoWriter.
 class VideoWriter {
  public:
   //   fps         frames per second, from 0.001 to 1,000,000. A rounded rate of television, such as
