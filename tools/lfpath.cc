@@ -20,6 +20,7 @@
 #include "lf/camera/path/view_cameras.h"
 #include "lf/core/log.h"
 #include "lf/core/output_files.h"
+#include "lf/film/develop/quilt_devices.h"
 #include "lf/import/check/similarity.h"
 #include "lf/import/formats/open_light_field.h"
 #include "lf/import/paths/open_path.h"
@@ -69,6 +70,7 @@ struct Arguments {
   std::optional<double> separation_w, separation_mm, view_angle_deg;
   std::string convergence;
   std::optional<std::pair<int, int>> quilt;  // columns, rows
+  std::string device;
   bool overwrite = false;
 
   bool makes_views() const { return separation_w || separation_mm || quilt; }
@@ -149,7 +151,9 @@ void AddOutput(CLI::App& app, Arguments& a) {
       .Add("--fps RATE", a.fps,
            "Frames per second (as PATH states, else 30)\n"
            "If PATH states another rate, the path is resampled: it lasts as long as before. With "
-           "several views of each moment, the rate is that of the moments.")
+           "several views of each moment, the rate is that of the moments. A fraction is a rate: "
+           "24000/1001.")
+      ->transform(lf::Rate())
       ->check(CLI::Range(1e-3, 1e6));
   output
       .Add(
@@ -189,17 +193,27 @@ void AddViews(CLI::App& app, Arguments& a) {
                     ->excludes(stereo)
                     ->excludes(stereo_mm);
   output
+      .Add("--device NAME", a.device,
+           "Make the views of this Looking Glass display\n"
+           "NAME: portrait, go, 16-landscape, 16-portrait, 32-landscape, 32-portrait or 65. "
+           "It decides --quilt, and the size of the frames unless --resolution is given, by "
+           "the settings of the maker (doc/stereo.md). Frames have the aspect of the display; "
+           "lfquilt --device squeezes them into the tiles.")
+      ->check(CLI::IsMember(lf::NamesOfQuiltDevices()))
+      ->excludes(stereo)
+      ->excludes(stereo_mm)
+      ->excludes(quilt);
+  output
       .Add("--view-angle DEGREES", a.view_angle_deg,
-           "Angle that the views of --quilt fill (35)\n"
+           "Angle that the views of a quilt fill (35)\n"
            "The angle between the outermost views, seen from the plane of convergence. Makers of "
            "light field displays recommend 35 to 40 degrees.")
-      ->check(CLI::Range(lf::kLeastViewAngle_deg, lf::kMostViewAngle_deg))
-      ->needs(quilt);
+      ->check(CLI::Range(lf::kLeastViewAngle_deg, lf::kMostViewAngle_deg));
   output
       .Add("--convergence DISTANCE", a.convergence,
            "Distance where all views agree (the focus distance)\n"
            "Along the optical axis, in world units, such as 0.4, or in millimetres, such as 400mm, "
-           "for --stereo and --quilt: points at this distance appear on the screen, nearer ones in "
+           "for all views: points at this distance appear on the screen, nearer ones in "
            "front of it. Without it, each frame has its own focus distance.")
       ->check(lf::NotEmpty());
 }
@@ -287,8 +301,12 @@ lf::Result<lf::CameraPath> ViewsOf(const Arguments& a, lf::CameraPath path) {
   constexpr double kDefaultViewAngle_deg = 35;
   if (!a.makes_views() && !a.convergence.empty())
     return lf::UsageError(
-        "--convergence can only be used with --stereo, --stereo-mm or --quilt: leave it out, or "
-        "give one of them");
+        "--convergence can only be used with --stereo, --stereo-mm, --quilt or --device: leave it "
+        "out, or give one of them");
+  if (!a.quilt && a.view_angle_deg)
+    return lf::UsageError(
+        "--view-angle can only be used with --quilt or --device: leave it out, or give one of "
+        "them");
   if (!a.makes_views()) return path;
   std::optional<double> convergence_w;
   if (!a.convergence.empty()) {
@@ -385,6 +403,14 @@ void NameFromOutput(const Arguments& a, lf::CameraPath* path) {
     path->focal_surface->file = (from / file).lexically_normal().lexically_relative(to).string();
 }
 
+// Chooses the views, and their size, that a display is given.
+void ApplyDevice(Arguments* a) {
+  if (a->device.empty()) return;
+  const lf::QuiltDevice& device = lf::QuiltDeviceNamed(a->device);
+  a->quilt = {device.grid.columns, device.grid.rows};
+  if (!a->resolution) a->resolution = {device.view().width, device.view().height};
+}
+
 lf::Result<void> Run(const Arguments& a, bool json) {
   LF_ASSIGN_OR_RETURN(const lf::PathOptions options, OptionsOf(a));
   LF_ASSIGN_OR_RETURN(lf::CameraPath opened, lf::OpenPath(a.path, options));
@@ -412,5 +438,8 @@ int main(int argc, char** argv) {
                                     "Infinite numbers are null.",
                             .verbose = true,
                             .quiet = true});
-  return program.Run(argc, argv, [&] { return Run(arguments, program.common().json); });
+  return program.Run(argc, argv, [&] {
+    ApplyDevice(&arguments);
+    return Run(arguments, program.common().json);
+  });
 }

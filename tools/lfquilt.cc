@@ -16,6 +16,8 @@
 #include "tools/common/validators.h"
 
 #include "lf/core/log.h"
+#include "lf/film/develop/quilt_devices.h"
+#include "lf/film/develop/video.h"
 #include "lf/film/develop/view_film.h"
 
 namespace {
@@ -49,6 +51,8 @@ struct Arguments {
   std::vector<std::string> frames;
   std::string output, layout = "quilt";
   std::optional<std::pair<int, int>> views;  // columns, rows
+  std::optional<std::pair<int, int>> tile;   // width, height
+  std::string device;
   std::optional<double> fps;
   bool resume = false, overwrite = false;
 };
@@ -81,13 +85,35 @@ void AddOptions(CLI::App& app, Arguments& a) {
                    "over-under: the view of the left eye is above\n"
                    "anaglyph: red of the left eye's view, green and blue of the right eye's\n"
                    "left-right: files of their own, NAME_left and NAME_right");
+  auto* views =
+      output
+          .Add("--views CxR", a.views,
+               "Columns and rows of a quilt\n"
+               "As for lfpath --quilt. Required for quilts, unless --device states it; the other "
+               "layouts have two views.")
+          ->delimiter('x')
+          ->check(CLI::Range(1, 1000));
+  auto* tile = output
+                   .Add("--tile WxH", a.tile,
+                        "Size of a tile of a quilt, in pixels (as the frames)\n"
+                        "Whole views are squeezed into tiles of another aspect, as light field "
+                        "displays expect. The name of the quilt keeps the aspect of the views.")
+                   ->delimiter('x')
+                   ->check(CLI::Range(1, 65536));
   output
-      .Add("--views CxR", a.views,
-           "Columns and rows of a quilt\n"
-           "As for lfpath --quilt. Required for quilts; the other layouts have two views.")
-      ->delimiter('x')
-      ->check(CLI::Range(1, 1000));
-  output.Add("--fps RATE", a.fps, "Frames per second of a video (as the frames state, else 30)")
+      .Add("--device NAME", a.device,
+           "Make the quilt of this Looking Glass display\n"
+           "NAME: portrait, go, 16-landscape, 16-portrait, 32-landscape, 32-portrait or 65. "
+           "It decides --views and --tile, by the settings of the maker (doc/stereo.md). The "
+           "frames must be those of lfpath --device. For a video, tiles have even sizes.")
+      ->check(CLI::IsMember(lf::NamesOfQuiltDevices()))
+      ->excludes(views)
+      ->excludes(tile);
+  output
+      .Add("--fps RATE", a.fps,
+           "Frames per second of a video (as the frames state, else 30)\n"
+           "A number, or a fraction such as 24000/1001.")
+      ->transform(lf::Rate())
       ->check(CLI::Range(1e-3, 1e6));
   auto* resume = running.AddFlag(
       "--resume", a.resume,
@@ -102,16 +128,30 @@ lf::Result<lf::ViewFilmOptions> OptionsOf(const Arguments& a) {
   lf::ViewFilmOptions options;
   options.layout = *lf::ParseViewLayout(a.layout);
   const bool is_quilt = options.layout == lf::ViewLayout::kQuilt;
-  if (is_quilt && !a.views)
+  if (is_quilt && !a.views && a.device.empty())
     return lf::UsageError(
-        "--layout quilt needs --views CxR, the columns and rows that lfpath --quilt was given; "
-        "give it, or choose another layout");
+        "--layout quilt needs --views CxR, the columns and rows that lfpath --quilt was given, or "
+        "--device; give one of them, or choose another layout");
+  if (!is_quilt && (a.tile || !a.device.empty()))
+    return lf::UsageError(fmt::format(
+        "--{} can only be used with --layout quilt, because the other layouts keep the size of "
+        "views: leave it out",
+        a.tile ? "tile" : "device"));
   if (!is_quilt && a.views)
     return lf::UsageError(fmt::format(
         "--views {}x{} can only be used with --layout quilt, because --layout {} has two views: "
         "leave it out",
         a.views->first, a.views->second, a.layout));
   if (a.views) options.grid = {a.views->first, a.views->second};
+  if (a.tile) options.tile = lf::ViewSize{a.tile->first, a.tile->second};
+  if (!a.device.empty()) {
+    const lf::QuiltDevice& device = lf::QuiltDeviceNamed(a.device);
+    lf::ViewSize tile = device.tile();
+    if (lf::IsVideoName(a.output)) tile = {tile.width / 2 * 2, tile.height / 2 * 2};
+    options.grid = device.grid;
+    options.tile = tile;
+    options.aspect = device.aspect();
+  }
   options.output = a.output;
   options.fps = a.fps;
   options.resume = a.resume;

@@ -41,6 +41,7 @@ UNTRIED = {
     "check_film_settings: exposures of the same poses (lf_clipped)": CAPTURE + "brackets that were filmed",
     "check_film_settings: state its key time, or open one time": BEFORE,
     "store_cache: make the store by resolution": "needs a server with a large store; remote_store_test.py has one",
+    "view_film: render the views of lfpath --device": "needs the frames of 48 views or more; stereo_test.py has them",
     "cache_folders: name one (--store-cache)": "needs an environment without HOME; programs then go on",
     "video_frames: name a folder for them (--frame-cache)": "needs a folder that this user cannot write",
     "foreign_path: state the same quantity: leave one of them out": BEFORE,

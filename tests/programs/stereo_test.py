@@ -286,6 +286,71 @@ class StereoTest(ProgramTestCase):
         self.assertEqual(in_units, in_mm)
         self.fails(2, ["--convergence 4cm", "400mm"], PATH, self.path, "--stereo", 0.3, "--convergence", "4cm")
 
+    def test_views_of_a_device_have_its_aspect_and_the_field_of_view_of_the_path(self):
+        focal_mm, sensor_mm = 36, 36  # of PATH_YAML: they decide the field of view across
+        for device, grid, size, aspect in (
+                ("portrait", 8 * 6, [420, 560], 3 / 4), ("go", 11 * 6, [384, 682], 9 / 16),
+                ("16-landscape", 7 * 7, [1524, 857], 16 / 9), ("16-portrait", 11 * 6, [563, 1000], 9 / 16),
+                ("32-landscape", 7 * 7, [2080, 1170], 16 / 9), ("32-portrait", 11 * 6, [768, 1364], 9 / 16),
+                ("65", 8 * 9, [1618, 910], 16 / 9)):
+            made = json.loads(self.succeeds(PATH, self.path, "--device", device, "--frames", 1, "--json"))
+            self.assertEqual((made["frames"], made["resolution"]), (grid, size), device)
+            camera = made["cameras"][0]
+            self.assertAlmostEqual(camera["focal_length_mm"], focal_mm, 6)
+            upright = np.degrees(2 * np.arctan(sensor_mm / 2 / focal_mm / aspect))
+            self.assertLess(abs(camera["field_of_view_deg"][1] - upright), 0.2, device)
+        small = json.loads(self.succeeds(PATH, self.path, "--device", "go", "--resolution", "36x64", "--view-angle", 20,
+                                         "--json"))
+        self.assertEqual((small["frames"], small["resolution"]), (2 * 66, [36, 64]))
+        for words in (("--device", "go", "--quilt", "3x2"), ("--device", "go", "--stereo", 1), ("--device", "phone")):
+            self.assertEqual(self.call(PATH, self.path, *words).returncode, 2, words)
+
+    def test_views_are_squeezed_into_tiles(self):
+        """A tile shows the whole view: OpenCV's means of areas are the judge."""
+        said = json.loads(self.join(self.quilt, "-o", self.folder / "s.exr", "--views", "3x2", "--tile", "150x160",
+                                    "--json"))
+        self.assertEqual(said["resolution"], [450, 320])
+        # The name keeps the aspect of the display.
+        file = self.folder / "s_0002_qs3x2a1.50.exr"
+        self.assertIn(str(file), said["files"])
+        quilt = exr_file.channels_of(file)
+        for view in range(6):
+            frame = exr_file.channels_of(self.quilt / f"frame_{6 + view + 1:04d}.exr")
+            left, top = view % 3 * 150, (1 - view // 3) * 160
+            for name in "RGB":
+                expected = cv2.resize(frame[name].astype(np.float32), (150, 160), interpolation=cv2.INTER_AREA)
+                tile = quilt[name][top:top + 160, left:left + 150].astype(np.float32)
+                self.assertLess(np.abs(tile - expected).max(), 0.002)
+            self.assertGreater(expected.max(), 0.05)
+        # The file that exists was made with other tiles.
+        self.fails(2, ["was made with layout quilt 3x2 of 150x160", "quilt 3x2"], QUILT, self.quilt, "-o",
+                   self.folder / "s.exr", "--views", "3x2", "--resume")
+        self.join(self.quilt, "-o", self.folder / "s.exr", "--views", "3x2", "--tile", "150x160", "--resume")
+
+    def test_the_quilt_of_a_device(self):
+        path, frames = self.folder / "go.yaml", self.folder / "go"
+        self.succeeds(PATH, self.path, "-o", path, "--device", "go", "--frames", 1, "--view-angle", 3, "--convergence",
+                      CONVERGENCE, "-q")
+        self.succeeds(RENDERER, self.field, path, "-o", frames, "--format", "png", "--no-contact-sheet", "-q")
+        said = json.loads(self.join(frames, "-o", self.folder / "film.png", "--device", "go", "--json"))
+        self.assertEqual(said["resolution"], [4092, 4092])
+        self.assertEqual(said["files"], [str(self.folder / "film_qs11x6a0.56.png")])
+        whole = self.png(self.folder / "film_qs11x6a0.56.png")
+        first = self.png(frames / "frame_0001.png")
+        # A light in the first view is in the lower left tile, squeezed.
+        ys, xs = np.nonzero(first.sum(axis=2) > 300)
+        tile = whole[-682:, :372]
+        tile_ys, tile_xs = np.nonzero(tile.sum(axis=2) > 300)
+        self.assertGreater(len(xs), 20)
+        self.assertAlmostEqual(tile_xs.mean() / 372, xs.mean() / 384, 2)
+        self.assertAlmostEqual(tile_ys.mean(), ys.mean(), delta=1.5)
+        self.fails(2, ["0.563", "1.778", "lfpath --device"], QUILT, *sorted(frames.glob("*.png"))[:49], "-o",
+                   self.folder / "other.png", "--device", "16-landscape")
+        self.fails(2, ["--tile can only be used with --layout quilt"], QUILT, self.stereo, "-o", self.folder / "x.png",
+                   "--layout", "side-by-side", "--tile", "10x10")
+        self.fails(2, ["240 x 160", "a tile of the quilt 300 x 160", "--tile"], QUILT, self.quilt, "-o",
+                   self.folder / "x.exr", "--views", "3x2", "--tile", "300x160")
+
     def test_wrong_calls_of_lfpath(self):
         self.fails(2, ["--stereo SEPARATION", "from 1e-09 to 1e+09", "found '0'"], PATH, self.path, "--stereo", 0)
         self.fails(2, ["--quilt CxR", "found '8'"], PATH, self.path, "--quilt", 8)

@@ -76,6 +76,33 @@ class VideosTest(ProgramTestCase):
         self.assertEqual((found.returncode, found.stderr), (0, ""), video)
         return int(found.stdout)
 
+    def test_an_odd_size_loses_a_pixel_and_a_warning_says_so(self):
+        path = self.folder / "odd.yaml"
+        for size, words, left in (("[81, 61]", "the last column and the last row", "80,60"),
+                                  ("[81, 60]", "the last column of", "80,60"),
+                                  ("[80, 61]", "the last row of", "80,60"), ("[80, 60]", "", "80,60")):
+            path.write_text(small_field.write_path(self.folder).read_text().replace("[80, 60]", size))
+            video, out = self.folder / "odd.mp4", self.folder / f"odd {size}"
+            done = self.call(RENDERER, self.field, path, "-o", out, "--format", "png", "--video", video,
+                             "--overwrite", "-q")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual(done.stderr.count("warning: "), bool(words), done.stderr)
+            self.assertIn(words, done.stderr)
+            found = subprocess.run(["ffprobe", "-v", "error", "-show_entries", "stream=width,height", "-of",
+                                    "csv=p=0", video], capture_output=True, text=True)
+            self.assertEqual(found.stdout.strip(), left)
+
+    def test_a_fraction_is_a_rate(self):
+        video = self.folder / "film.mp4"
+        self.succeeds(QUILT, self.film, "-o", video, "--layout", "side-by-side", "--fps", "24000/1001", "-q")
+        found = subprocess.run(["ffprobe", "-v", "error", "-show_entries", "stream=r_frame_rate", "-of", "csv=p=0",
+                                video], capture_output=True, text=True)
+        self.assertEqual(found.stdout.strip(), "24000/1001")
+        self.succeeds(PATH, self.path, "-o", self.folder / "slow.yaml", "--fps", "12000/1001")
+        self.assertIn("fps: 11.988011988", (self.folder / "slow.yaml").read_text())
+        self.fails(2, ["--fps RATE", "found '24/0'"], QUILT, self.film, "-o", video, "--layout", "side-by-side",
+                   "--fps", "24/0", "--overwrite")
+
     def run_limited(self, command, size_bytes):
         def limit():
             resource.setrlimit(resource.RLIMIT_FSIZE, (size_bytes, size_bytes))

@@ -10,6 +10,7 @@
 
 #include "lf/film/develop/colour_space.h"
 #include "lf/film/develop/display_picture.h"
+#include "lf/film/develop/squeeze_view.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -117,18 +118,21 @@ Result<StoredImage> JoinViews(std::span<const fs::path> files, const PictureHead
                       JoinedChannels(header, options, files[0].string()));
   const int channels = static_cast<int>(names.size());
   const TileCounts grid = GridOf(options.layout, options.grid);
+  const ViewSize of_view = {header.info.width, header.info.height};
+  const ViewSize tile = options.tile.value_or(of_view);
   StoredImage joined =
       EmptyPicture(options.is_for_display ? PixelType::kUint8 : header.colours.type,
-                   header.info.width * grid.columns, header.info.height * grid.rows, channels);
+                   tile.width * grid.columns, tile.height * grid.rows, channels);
   std::vector<std::optional<Error>> errors(files.size());
   std::atomic<bool> is_interrupted = false;
   pool.ForEach(files.size(), [&](size_t i) {
     if (is_interrupted) return;
-    const Result<StoredImage> view = ReadView(files[i], header, options.is_for_display);
+    Result<StoredImage> view = ReadView(files[i], header, options.is_for_display);
     if (!view) {
       errors[i] = view.error();
       return;
     }
+    if (tile != of_view) *view = Squeezed(*view, tile.width, tile.height);
     const int index = static_cast<int>(i);
     std::visit(
         [&](const auto& image) {

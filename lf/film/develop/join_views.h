@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,6 +23,9 @@ struct JoinOptions {
   // True: the joined picture is 8-bit sRGB, composited over black, for a video or for the PNG file
   // of EXR frames. False: it has the type and the colours of the views.
   bool is_for_display = false;
+  // Size of a tile of a quilt, into which views are squeezed; none: that of the views, which are
+  // then copied. Must not exceed theirs.
+  std::optional<ViewSize> tile = {};
 };
 
 // Returns the names of the channels of the joined picture: R, G, B and, if the views have it, A of

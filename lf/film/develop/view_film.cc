@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -54,12 +55,16 @@ class FilmWriter {
     return options_.output.extension() == ".png" && moments_[0].files[0].extension() == ".exr";
   }
   JoinOptions join() const {
-    return {options_.layout, options_.grid, is_video() || is_developed()};
+    return {options_.layout, options_.grid, is_video() || is_developed(), options_.tile};
   }
 
+  ViewSize of_view() const { return {header_.info.width, header_.info.height}; }
+  ViewSize tile() const { return options_.tile.value_or(of_view()); }
   std::string LayoutText() const {
     if (options_.layout != ViewLayout::kQuilt) return NameOf(options_.layout);
-    return fmt::format("quilt {}x{}", options_.grid.columns, options_.grid.rows);
+    const std::string quilt = fmt::format("quilt {}x{}", options_.grid.columns, options_.grid.rows);
+    if (tile() == of_view()) return quilt;
+    return fmt::format("{} of {}x{}", quilt, tile().width, tile().height);
   }
 
   Result<void> CheckOutput() const;
@@ -120,6 +125,20 @@ Result<void> FilmWriter::CheckOutput() const {
 }
 
 Result<void> FilmWriter::CheckShape() const {
+  constexpr double kMostOff = 0.01;
+  const double aspect = static_cast<double>(of_view().width) / of_view().height;
+  if (options_.aspect && std::abs(aspect / *options_.aspect - 1) > kMostOff)
+    return UsageError(fmt::format(
+        "{}: has {} x {} pixels, width / height {:.3f}, but the display has {:.3f}: render the "
+        "views of {{lfpath device}}",
+        moments_[0].files[0].string(), of_view().width, of_view().height, aspect,
+        *options_.aspect));
+  if (tile().width > of_view().width || tile().height > of_view().height)
+    return UsageError(fmt::format(
+        "{}: has {} x {} pixels, and a tile of the quilt {} x {}: render views of at least this "
+        "size, or make the tiles smaller ({{tile}})",
+        moments_[0].files[0].string(), of_view().width, of_view().height, tile().width,
+        tile().height));
   const int64_t pixels = int64_t{report_.width} * report_.height;
   if (pixels > kMostPixels)
     return InputError(fmt::format(
@@ -132,8 +151,8 @@ Result<void> FilmWriter::CheckShape() const {
     return InputError(
         fmt::format("{} x {} views of {} x {} pixels become a quilt of {} x {}, and a video needs "
                     "an even width and height: render views of even size",
-                    options_.grid.columns, options_.grid.rows, header_.info.width,
-                    header_.info.height, report_.width, report_.height));
+                    options_.grid.columns, options_.grid.rows, tile().width, tile().height,
+                    report_.width, report_.height));
   return {};
 }
 
@@ -260,6 +279,7 @@ Result<StoredImage> FilmWriter::Join(const ViewMoment& moment, std::optional<int
     files = files.subspan(static_cast<size_t>(*eye), 1);
     options.layout = ViewLayout::kQuilt;
     options.grid = {};
+    options.tile.reset();
   }
   return JoinViews(files, header_, options, pool_, [this] { return CountView(); });
 }
@@ -310,8 +330,8 @@ Result<ViewFilmReport> FilmWriter::Write(std::span<const fs::path> frames) {
   if (is_video() || is_developed() || !is_left_right())
     LF_RETURN_IF_ERROR(JoinedChannels(header_, join(), moments_[0].files[0].string()));
   const TileCounts grid = GridOf(options_.layout, options_.grid);
-  report_.width = grid.columns * header_.info.width;
-  report_.height = grid.rows * header_.info.height;
+  report_.width = grid.columns * tile().width;
+  report_.height = grid.rows * tile().height;
   LF_RETURN_IF_ERROR(CheckShape());
   LF_RETURN_IF_ERROR(ChooseRate());
   if (const Result<void> planned = PlanTargets(); !planned)

@@ -26,6 +26,11 @@ struct ViewFilmOptions {
   bool resume = false;     // keep files of the same frames and options, and write the others
   bool overwrite = false;  // replace the files that exist
   std::function<bool()> is_interrupted = {};
+  // Size of a tile of a quilt, into which the whole views are squeezed, as displays want it whose
+  // quilts have tiles of another aspect; none: that of the views. The name keeps the views' aspect.
+  std::optional<ViewSize> tile = {};
+  // Width of the views divided by their height, which is checked to one percent; none: any.
+  std::optional<double> aspect = {};
 };
 
 struct ViewFilmReport {
@@ -46,10 +51,11 @@ struct ViewFilmReport {
 // Each file that is no copy of a frame states what it was made of (file_inputs.h): its layout, and
 // a hash of its frames. kUsage: the extension of the output fits neither the frames nor a video; a
 // file exists, and neither resume nor overwrite is set; resume is set, and a file was made of other
-// frames or in another way; a file would replace a frame; fps without a video. kInput: errors of
-// FindViewMoments(), CommonHeader(), JoinedChannels(); the joined picture would have more than 2^30
-// pixels, or, for the video of a quilt, an odd size. kOutput: a file cannot be written, ffmpeg is
-// missing, or another call writes files of this name. kInterrupted: complete files stay.
+// frames or in another way; a file would replace a frame; fps without a video; a tile is larger
+// than the views; the views have another aspect. kInput: errors of FindViewMoments(),
+// CommonHeader(), JoinedChannels(); the joined picture would have more than 2^30 pixels, or, for
+// the video of a quilt, an odd size. kOutput: a file cannot be written, ffmpeg is missing, or
+// another call writes files of this name. kInterrupted: complete files stay.
 Result<ViewFilmReport> WriteViewFilm(
     std::span<const std::filesystem::path> frames, const ViewFilmOptions& options, ThreadPool& pool,
     const std::function<void(size_t done, size_t total)>& on_progress);

@@ -404,5 +404,28 @@ TEST_F(ViewFilmTest, ForDisplayLightOfAnyPrimariesBecomesSrgb) {
       EXPECT_NEAR(picture.at(i, 0, c), c == (i + 1) % 3 ? 255 : 0, 1) << i << " " << c;
 }
 
+TEST_F(ViewFilmTest, ATileHasItsSizeAndTheNameTheAspectOfTheViews) {
+  WriteFrames<uint8_t>(1, 2, 8, 4);
+  ViewFilmOptions options = {ViewLayout::kQuilt, {2, 1}, folder_ / "q.png"};
+  options.tile = {4, 4};
+  options.aspect = 2;
+  const auto written = Write(options);
+  ASSERT_TRUE(written) << written.error().message;
+  EXPECT_EQ(written->width, 8);
+  EXPECT_EQ(written->height, 4);
+  const auto joined = Read<uint8_t>("q_qs2x1a2.00.png");
+  EXPECT_EQ(joined.width(), 8);
+  // The mean of two neighbours lies between them.
+  const auto first = Picture<uint8_t>(1, 8, 4, 3);
+  EXPECT_GT(joined.at(1, 2, 0), first.at(2, 2, 0));
+  EXPECT_LT(joined.at(1, 2, 0), first.at(3, 2, 0));
+  options.output = folder_ / "r.png";
+  options.tile = {9, 4};
+  ExpectWords(ErrorOf(options, ErrorKind::kUsage), {"8 x 4 pixels", "9 x 4", "{tile}"});
+  options.tile = {4, 4};
+  options.aspect = 1.5;
+  ExpectWords(ErrorOf(options, ErrorKind::kUsage), {"2.000", "1.500", "{lfpath device}"});
+}
+
 }  // namespace
 }  // namespace lf

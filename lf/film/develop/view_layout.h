@@ -27,6 +27,13 @@ struct TileCounts {
   int view_count() const { return columns * rows; }
 };
 
+// Width and height in pixels.
+struct ViewSize {
+  int width = 0;
+  int height = 0;
+  bool operator==(const ViewSize&) const = default;
+};
+
 // Returns the number of views of one moment: 2 unless the layout is a quilt of `grid`.
 int ViewCountOf(ViewLayout layout, const TileCounts& grid);
 
