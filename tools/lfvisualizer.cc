@@ -97,7 +97,7 @@ void AddOutput(CLI::App& app, Arguments& a) {
                     ->check(CLI::Range(0, 65535));
   auto* allow_origin = output.Add(
       "--allow-origin URL", a.allowed_origins,
-      "Open the page through a reverse proxy of this address; may be repeated\n"
+      "Let a reverse proxy at URL show the page; may be repeated\n"
       "URL is the scheme, the host and, if the browser shows one, the port, such as "
       "https://fields.example. Through forwarded ports of this machine (ssh -L) the page opens "
       "without it.");
@@ -308,8 +308,9 @@ lf::Result<void> Run(Arguments& a, const lf::CommonOptions& common) {
   LF_RETURN_IF_ERROR(lf::PrintReport(server->address() + "\n"));
   lf::LogInfo("open this address in a browser; Ctrl-C ends lfvisualizer");
   for (const lf::WebOrigin& origin : allowed_origins)
-    lf::LogInfo("through the reverse proxy: {}/{}/, below the folder that it forwards, if any",
-                lf::OriginText(origin), server->token());
+    lf::LogInfo(
+        "through the reverse proxy, open {0}/{1}/, or {0}/FOLDER/{1}/ if it forwards FOLDER",
+        lf::OriginText(origin), server->token());
   // A server ends as it should, with exit code 0, however long its last answers take.
   until_served.reset();
   const std::jthread check([&] { WarnOfDisagreement(a, interrupted, scene.get()); });

@@ -148,11 +148,12 @@ class VisualizerTest(ProgramTestCase):
                           "http://fields.example", error)
         status, error = ask("other.example", "https://fields.example")
         self.assertEqual(status, 403)
-        self.assertIn('not served to the host "other.example": open it at 127.0.0.1 or localhost, of any port, or '
+        self.assertIn('not served to the host "other.example": open it at 127.0.0.1 or localhost, with any port, or '
                       "https://fields.example, or http://10.0.0.7;", error)
         server.send_signal(signal.SIGINT)
         self.assertEqual(server.wait(), 0)
-        self.assertIn(f"through the reverse proxy: https://fields.example{address.path}, below", server.stderr.read())
+        self.assertIn(f"through the reverse proxy, open https://fields.example{address.path}, or ",
+                      server.stderr.read())
 
     def test_without_a_path_a_command_that_makes_one_is_printed(self):
         self.fails(2, ["PATH is missing", f": lfexample {self.field} -o path"], VISUALIZER, self.field)

@@ -69,7 +69,7 @@ std::optional<PageAnswer> RefusalOfHost(const std::vector<std::string_view>& hos
     return Refusal(403, fmt::format("the request has {} headers Host: expected one", hosts.size()));
   const auto host = ParseWebHost(hosts[0]);
   if (host && IsOurHost(*host, door)) return std::nullopt;
-  std::string names = "127.0.0.1 or localhost, of any port";
+  std::string names = "127.0.0.1 or localhost, with any port";
   for (const WebOrigin& origin : door.allowed_origins) names += ", or " + OriginText(origin);
   const std::string advice =
       host ? fmt::format(

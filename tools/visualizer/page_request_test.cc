@@ -108,7 +108,7 @@ TEST(PageRequest, AnAllowedOriginIsAnsweredWithEitherHost) {
 TEST(PageRequest, RefusalsSayWhatWasFoundAndWhatIsExpected) {
   EXPECT_EQ(MessageOf(HeadFor("evil.example:81", nullptr)),
             "the page is not served to the host \"evil.example:81\": open it at 127.0.0.1 or "
-            "localhost, of any port, or https://fields.example; if this is your reverse proxy, "
+            "localhost, with any port, or https://fields.example; if this is your reverse proxy, "
             "start lfvisualizer with the address that the browser shows, up to the host and port, "
             "such as --allow-origin https://evil.example:81");
   EXPECT_EQ(MessageOf(HeadFor("127.0.0.1:9000", "http://a.example:80")),
@@ -119,9 +119,10 @@ TEST(PageRequest, RefusalsSayWhatWasFoundAndWhatIsExpected) {
             "a page of the origin \"null\" may not use lfvisualizer: expected "
             "https://fields.example");
   const std::string longest(5000, 'x');
-  EXPECT_EQ(MessageOf(HeadFor((longest + "\xff\n @").c_str(), nullptr)),
-            "the page is not served to the host \"" + longest.substr(0, 100) +
-                "...\": open it at 127.0.0.1 or localhost, of any port, or https://fields.example");
+  EXPECT_EQ(
+      MessageOf(HeadFor((longest + "\xff\n @").c_str(), nullptr)),
+      "the page is not served to the host \"" + longest.substr(0, 100) +
+          "...\": open it at 127.0.0.1 or localhost, with any port, or https://fields.example");
 }
 
 TEST(PageRequest, PathsWithoutTheTokenAreRefused) {
