@@ -167,6 +167,10 @@ bool FileLock::IsHeld(const std::filesystem::path& path) {
   return LockClaim::IsAny(path);
 }
 
+bool FileLock::IsPart(const std::filesystem::path& path, const std::filesystem::path& file) {
+  return file == path || file == LockClaim::FolderOf(path);
+}
+
 Result<void> FileLock::ShareWith(pid_t child) {
   if (claim_) return claim_->ShareWith(child);
   const std::string text = TextOf(IdentityOf(child)) + "\n";

@@ -36,6 +36,9 @@ class FileLock {
   // process may not read it. On a disk without locks, the process of another machine holds it
   // until its claim is old.
   static bool IsHeld(const std::filesystem::path& path);
+  // True if `file` belongs to the lock `path`: the lock file itself, or the folder of its claims.
+  // Whoever empties the folder of a lock must leave such files alone.
+  static bool IsPart(const std::filesystem::path& path, const std::filesystem::path& file);
   FileLock(FileLock&& other) noexcept;
   FileLock& operator=(FileLock&& other) noexcept;
   ~FileLock();  // releases the lock; the file stays, unless RemoveInTheEnd() was called

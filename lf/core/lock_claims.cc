@@ -38,8 +38,6 @@ namespace {
 constexpr int kLooksAtClaims = 25, kClaimAttempts = 4;
 constexpr auto kBetweenLooks = std::chrono::milliseconds(4);
 
-fs::path FolderOfClaims(const fs::path& path) { return fs::path(path) += ".claims"; }
-
 double Seconds(const timespec& time) {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
@@ -169,7 +167,7 @@ ProcessLife LifeOfClaim(const FoundClaim& claim) {
 
 Error InTheWay(const fs::path& path, const FoundClaim& claim, double now_s,
                const ClaimTimes& times) {
-  const fs::path file = FolderOfClaims(path) / claim.name;
+  const fs::path file = LockClaim::FolderOf(path) / claim.name;
   const std::string who = claim.processes.empty()
                               ? ""
                               : fmt::format(" (process {} on {})", claim.processes.front().process,
@@ -280,8 +278,10 @@ Error CannotClaim(const fs::path& file, int reason) {
 
 }  // namespace
 
+fs::path LockClaim::FolderOf(const fs::path& path) { return fs::path(path) += ".claims"; }
+
 Result<std::unique_ptr<LockClaim>> LockClaim::Take(const fs::path& path, const ClaimTimes& times) {
-  const fs::path folder = FolderOfClaims(path);
+  const fs::path folder = LockClaim::FolderOf(path);
   const ProcessIdentity self = IdentityOf(::getpid());
   ClaimJudge judge(folder, times);
   std::optional<FoundClaim> in_the_way;
@@ -323,7 +323,7 @@ Result<std::unique_ptr<LockClaim>> LockClaim::Take(const fs::path& path, const C
 }
 
 Result<void> LockClaim::CheckNone(const fs::path& path, const ClaimTimes& times) {
-  const fs::path folder = FolderOfClaims(path);
+  const fs::path folder = LockClaim::FolderOf(path);
   if (::access(folder.c_str(), F_OK) != 0) return {};
   ClaimJudge judge(folder, times);
   // The lock file itself was written a moment ago.
@@ -336,7 +336,7 @@ Result<void> LockClaim::CheckNone(const fs::path& path, const ClaimTimes& times)
 }
 
 bool LockClaim::IsAny(const fs::path& path, const ClaimTimes& times) {
-  const std::vector<FoundClaim> claims = ClaimsIn(FolderOfClaims(path), "");
+  const std::vector<FoundClaim> claims = ClaimsIn(LockClaim::FolderOf(path), "");
   return std::any_of(claims.begin(), claims.end(), [&](const FoundClaim& claim) {
     const ProcessLife life = LifeOfClaim(claim);
     return life == ProcessLife::kLives ||

@@ -34,6 +34,8 @@ struct ClaimTimes {
 
 class LockClaim {
  public:
+  // Returns the folder of the claims to the lock `path`.
+  static std::filesystem::path FolderOf(const std::filesystem::path& path);
   // Claims the lock `path`, whose folder must exist. kOutput: another claim lives (the message
   // names machine, process and age, and says what to do), or the claim cannot be written. Waits a
   // few tenths of a second for other processes that claim it now, and `watch_s` for an old claim of

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the wheel requires, and what the package says if another Python imports it."""
+"""Tests the requirements of the wheel, and what the package says if another Python imports it."""
 import pathlib
 import shutil
 import subprocess

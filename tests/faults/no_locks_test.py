@@ -171,7 +171,7 @@ class NoLocksTest(ProgramTestCase):
         packages = sorted((self.folder / "packages").glob("*.lfp"))
         self.assertEqual(len(packages), 2)
         renderer = self.folder / "lfrenderer"
-        renderer.write_text(f'#!/bin/bash\n[ -e {self.folder}/go ] || sleep 60\nexec {RENDERER} "$@"\n')
+        renderer.write_text(f'#!/bin/bash\nuntil [ -e {self.folder}/go ]; do sleep 0.1; done\nexec {RENDERER} "$@"\n')
         renderer.chmod(0o755)
         command = [*packages, "-o", self.out, "--lfrenderer", renderer]
         first = self.start(SUBMIT, *command)
@@ -185,6 +185,17 @@ class NoLocksTest(ProgramTestCase):
         self.succeeds(SUBMIT, "--resume", self.out, "--lfrenderer", renderer)
         self.assertEqual(digests(self.out), expected)
         self.assertFalse(list(self.out.rglob("*.claims")))
+        # Emptying the folder of the job leaves the claim of the program that does so.
+        again = self.start(SUBMIT, *command, "--overwrite", "--jobs", "1")
+        (self.folder / "go").unlink()
+        claims = self.out / "cluster" / "lock.claims"
+        wait_until(lambda: json.loads(state.read_text())["starts"] == 1 if state.exists() else False, again)
+        self.assertEqual(len(list(claims.iterdir())), 1)
+        again.terminate()
+        self.assertEqual(again.wait(), 5)
+        (self.folder / "go").touch()
+        self.succeeds(SUBMIT, "--resume", self.out, "--lfrenderer", renderer)
+        self.assertEqual(digests(self.out), expected)
         self.assertEqual(json.loads(self.succeeds(SUBMIT, "--status", self.out, "--json"))["state"], "done")
 
     def frames_of(self, store):

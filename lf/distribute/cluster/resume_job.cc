@@ -55,7 +55,7 @@ void RemoveJob(const ClusterJob& job) {
        !ignored && entry != fs::directory_iterator(); entry.increment(ignored))
     files.push_back(entry->path());
   for (const fs::path& file : files)
-    if (file != job.EngineLock()) fs::remove_all(file, ignored);
+    if (!FileLock::IsPart(job.EngineLock(), file)) fs::remove_all(file, ignored);
 }
 
 }  // namespace
