@@ -94,8 +94,8 @@ TRIED = ("--format", "--values", "--colour-space", "--frame-alpha", "--z", "--ch
 OTHERS = ("--calibration-only", "--overwrite", "--force", "--clip", "--scale", "--unit-m", "--distance", "--frame",
           "--csv", "--fps", "--stereo-mm", "--clamp-frames", "--packages", "--frames-per-package", "--balance",
           "--shard-size", "--view", "--display", "--no-contact-sheet", "--back-and-forth", "--show", "--gain",
-          "--serve", "--allow-origin", "--export-images", "--export-live", "--live-memory", "--by-resolution", "--device",
-          "--tile", "--first-frame", "--fov-unit")
+          "--serve", "--allow-origin", "--export-images", "--export-live", "--live-memory", "--by-resolution",
+          "--device", "--tile", "--first-frame", "--fov-unit")
 
 
 def options_of(programs):

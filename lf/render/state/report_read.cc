@@ -57,7 +57,8 @@ FrameReport FrameFromJson(const Json& json, std::string* fault) {
     if (noise_fields.Find("reached") != nullptr)
       noise_fields.Get("reached", &frame.noise->reached.emplace());
   }
-  if (frame.frame.value > kLargestFrameNumber && fault->empty())
+  const bool has_number = fields.Find("frame") != nullptr;
+  if ((!has_number || frame.frame.value > kLargestFrameNumber) && fault->empty())
     *fault = fmt::format("\"frame\": expected a number from 0 to {}", kLargestFrameNumber);
   return frame;
 }

@@ -145,7 +145,7 @@ TEST(Report, OtherTextsAreErrorsThatNameTheFieldAndTheFile) {
         {R"({"format":"lfreport 3"})", "expected \"lfreport 2\", found \"lfreport 3\";"},
         {"[]", "expected an object"},
         {R"({"format":"lfreport 2","seconds":"x"})", "\"seconds\": expected a number"},
-        {R"({"format":"lfreport 2","frames":[{}]})", "number from 1"},
+        {R"({"format":"lfreport 2","frames":[{}]})", "number from 0"},
         {R"({"format":"lfreport 2","frames":[{"frame":1,"lf_images":-1}]})", "lf_images"},
         {R"({"format":"lfreport 2","frames":[{"frame":1,"inputs":{"a":1}}]})", "inputs"}}) {
     const Result<RenderReport> report = ParseReport(text, "some.json");

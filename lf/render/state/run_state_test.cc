@@ -153,7 +153,8 @@ TEST_F(RunStateTest, OtherInputsAreNamed) {
   path_.cameras.pop_back();
   refused = Open(true);
   ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().message.find("frame 3, but the camera path has 2"), std::string::npos);
+  EXPECT_NE(refused.error().message.find("frame 3, but the camera path has the frames 1 to 2"),
+            std::string::npos);
 }
 
 // The frames of two films in one folder would look like one film.
