@@ -80,7 +80,7 @@ def export_path(scene, file, first, last):
 
 
 def warnings_of(scene, path):
-    """Returns what to tell of a path that was exported (Exported)."""
+    """Yields the warnings about an exported path (Exported)."""
     if path.first < 0:
         yield (f"frame {path.first} of the scene is frame 1 of the path, because frames of a path have no numbers "
                "below 0: let the scene begin at frame 0 or later")
@@ -89,7 +89,7 @@ def warnings_of(scene, path):
 
 
 def pinhole_words(scene):
-    """Returns what to tell of a path without depth of field, with a lens that the rig of the panel fills."""
+    """Returns the warning about a path without depth of field. It proposes a lens that the rig of the panel fills."""
     words = ("depth of field is off, so that the path films a pinhole, which sees few LF cameras and has no blur. For "
              "a lens, switch Depth of Field on in the properties of the camera")
     camera, settings = scene.camera.data, scene.lfrendertools
@@ -149,8 +149,8 @@ def quaternion_of(rotation):
 
 
 def path_yaml(scene, keys, first_frame):
-    """Returns the text of the path, whose frames have the numbers of the scene's from first_frame on. InputError if
-    something moves that a path keeps."""
+    """Returns the text of the path, whose frames are numbered from first_frame, as in the scene. InputError if
+    something moves that a path keeps constant."""
     first = keys[0]
     constant = {"sensor_width_mm": "sensor size", "blades": "number of blades", "ratio": "anamorphic ratio"}
     for name, words in constant.items():

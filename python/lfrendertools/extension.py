@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Loads the extension, and says why if it was built for another Python."""
+"""Loads the extension. If it was built for another Python, the error says for which one."""
 from __future__ import annotations
 
 import importlib.machinery
@@ -11,7 +11,7 @@ __all__ = ["_core"]
 
 
 def _why_not(folder: pathlib.Path) -> str:
-    """Return why this Python finds no extension in a folder; nothing if it finds one, which has another fault."""
+    """Return why this Python finds no extension in a folder; "" if it finds one that fails for another reason."""
     files = sorted(path.name for path in folder.glob("_core*.so"))
     if any("_core" + suffix in files for suffix in importlib.machinery.EXTENSION_SUFFIXES):
         return ""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names of arguments that nobody knows, and the names that they were meant to be."""
+"""Suggests the argument that was meant if a call names one that the function does not have."""
 from __future__ import annotations
 
 import difflib
@@ -13,14 +13,14 @@ _Function = TypeVar("_Function", bound=Callable[..., Any])
 def suggestion(name: str, known: Iterable[str]) -> str:
     """Return "; did you mean NAME?" with the nearest of the known names, or nothing if none is near."""
     candidates = list(known)
-    # A unit that is left out: focal_length for focal_length_mm.
+    # The unit may have been left out: focal_length for focal_length_mm.
     near = [candidate for candidate in candidates if candidate.startswith(name + "_")]
     near = near or difflib.get_close_matches(name, candidates, 1, 0.6)
     return f"; did you mean {near[0]}?" if near else ""
 
 
 def suggests_names(function: _Function) -> _Function:
-    """Make a function tell the nearest name if it is called with an argument that it does not have."""
+    """Return the function with an error that suggests the nearest name for an argument that it does not have."""
     parameters = inspect.signature(function).parameters.values()
     known = [parameter.name for parameter in parameters
              if parameter.kind in (parameter.POSITIONAL_OR_KEYWORD, parameter.KEYWORD_ONLY)

@@ -36,7 +36,7 @@ def metadata(numpy):
 
 
 def numpy_for(pybind11):
-    """Returns the versions of NumPy that an extension works with, which was compiled by a version of pybind11."""
+    """Returns the versions of NumPy that an extension works with if this version of pybind11 compiled it."""
     major, minor = map(int, re.match(r"(\d+)\.(\d+)", pybind11).groups())
     return "numpy>=1.21" if (major, minor) >= (2, 12) else "numpy>=1.21,<2"
 
@@ -114,7 +114,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
 
 
 def build_sdist(sdist_directory, config_settings=None):
-    """Packs the files that git knows; PKG-INFO is the metadata, in which only a build bounds NumPy above."""
+    """Packs the files that git knows; PKG-INFO sets no upper limit for NumPy, because only a build knows it."""
     base = f"{NAME}-{version()}"
     names = subprocess.run(["git", "ls-files"], cwd=ROOT, check=True, capture_output=True, text=True).stdout.split("\n")
     with tempfile.NamedTemporaryFile("w", suffix="PKG-INFO") as info:

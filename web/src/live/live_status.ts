@@ -73,7 +73,8 @@ function part(name: string, text: string, level = "none", title: string | null =
   return element("span", { "data-part": name, "data-level": level, title }, text);
 }
 
-// Quick pictures are made of some of the LF images. Those without a weight count in neither number of a still picture.
+// A quick picture states how many LF images it has, of those in memory that it could take. A still picture states the
+// LF images that a frame would use: LF images in memory without a weight do not count.
 function imagesText({ images, takeable, used, camera_distance }: LiveFacts, unit_m: number): string {
   const spacing = camera_distance > 0 ? `, spacing ${millimetres(camera_distance, unit_m)}` : "";
   if (images < takeable) return `${shortNumber(images)} of ${shortNumber(takeable)} LF images${spacing}`;

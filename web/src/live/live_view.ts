@@ -30,7 +30,7 @@ export class LiveView {
   private readonly listeners: (() => void)[] = [];
   private pictureFault = "";
   private shownCamera: FrameCamera | null = null; // of the picture that is shown
-  private wholePath = ""; // path of the picture that is shown if it is a still one with virtual LF images
+  private wholePath = ""; // path of the still picture with virtual LF images that is shown; "" if another is
   private version = 0; // number of pictures shown so far
   private wanted = ""; // path of the newest picture that was wanted
 

@@ -43,7 +43,7 @@ function distance(key: { time: number }, time: number): number {
   return Math.abs(key.time - time);
 }
 
-// Returns the interpolations of a new key, and of the key after it, which had `word`.
+// Returns the interpolations of a new key and of the key after it, which had the interpolation `word` before.
 function split(word: Interpolation): [Interpolation, Interpolation] {
   if (word === "ease") return ["ease_in", "ease_out"];
   if (word === "ease_in") return ["ease_in", "smooth"];
@@ -51,8 +51,8 @@ function split(word: Interpolation): [Interpolation, Interpolation] {
   return [word, word];
 }
 
-// Deletes a key, as PathDocument.deleteKeyframe() does. If it had keys on both sides, the value still leaves the one
-// before from rest, and comes to rest at the one after, if it did so.
+// Deletes a key, as PathDocument.deleteKeyframe() does. A value that left the key before from rest still does, unless a
+// line or a step leads to the key after; one that came to rest at the key after still does.
 export function deleteKey(path: PathDocument, name: string, index: number): void {
   path.edit(() => {
     const { keyframes, baseIsKey } = path.quantity(name);

@@ -102,7 +102,8 @@ function refine(path: PathDocument, size_w: number): void {
   if (size_w > 0) path.resolution_w = Math.min(path.resolution_w, kResolution * size_w);
 }
 
-// Makes the film long enough for a movement that ends at `seconds`, but never shorter. Frame i is at (i - 1) / fps.
+// Makes the film long enough for a movement that ends at `seconds`, but never shorter. The frame with index i, from 0,
+// is at i / fps.
 function coverSeconds(path: PathDocument, seconds: number): void {
   const fps = path.constant("fps");
   const frames = path.constant("frames");
