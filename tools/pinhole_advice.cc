@@ -39,7 +39,7 @@ void WarnOfPinhole(const LightField& light_field, const CameraPath& path,
   const size_t count = frames.empty() ? path.frame_count() : frames.size();
   std::string words = fmt::format(
       "the aperture is 0 in {}: a pinhole, which sees few LF cameras and has no blur. "
-      "--lens-weights hat, which such a film has in any case, says that it is meant",
+      "To film a pinhole without this warning, add --lens-weights hat, which changes no bit",
       count == 1 ? "the frame" : fmt::format("all {} frames", count));
   const RenderCamera& first = frames.empty() ? path.cameras.front() : path.Camera(frames.front());
   const std::optional<ProposedLens> lens =

@@ -53,7 +53,7 @@ std::optional<double> RefreshTime(const fs::path& file) {
   return Seconds(status.st_mtim);
 }
 
-// Creates and writes a file. Returns 0 or an errno; the file is then gone.
+// Creates and writes a file. Returns 0, or an errno, in which case no file is left.
 int CreateClaim(const fs::path& file, const std::string& text) {
   const int fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (fd < 0) return errno;
@@ -115,9 +115,9 @@ class Refresher {
   }
   [[noreturn]] static void End(const fs::path& file) {
     LogMessage(LogLevel::kError,
-               fmt::format("{}: is gone, so that another program may work in this folder, because "
-                           "this one stood still for long or because somebody removed the file: "
-                           "this program ends at once; what it has saved can be continued",
+               fmt::format("{}: was removed, by somebody or by a program that took over because "
+                           "this one stood still for long. This program ends, because another one "
+                           "may work in this folder; what it has saved can be resumed",
                            file.string()));
     std::_Exit(static_cast<int>(ErrorKind::kOutput));
   }
@@ -208,7 +208,7 @@ class ClaimJudge {
     for (const auto& [name, refreshed_s] : dead_) ::unlink((folder_ / name).c_str());
   }
 
-  // Sets what the disk takes for now, at which ages of files end.
+  // Sets the present time by the clock of the disk, up to which ages of files are counted.
   void SetNow(double now_s) { now_s_ = now_s; }
   double now_s() const { return now_s_; }
 

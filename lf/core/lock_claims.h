@@ -10,9 +10,9 @@
 //
 // A claim lives as long as one of the processes that it names lives. Of processes of other machines
 // only the age of the file tells: the owner refreshes it every `refresh_s`, as long as it has it.
-// Once the file is `stale_s` old and is not refreshed in the next `watch_s` either, it is dead. The
-// ages are differences of times that the disk gives, so that the clocks of machines may differ; and
-// a claim that is refreshed is never dead, whatever the clocks say.
+// Once the file is `stale_s` old and is not refreshed in the next `watch_s` either, the claim is
+// dead. The ages are differences of times that the disk gives, so that the clocks of machines may
+// differ; and a claim that is refreshed is never dead, whatever the clocks say.
 //
 // A process whose claim was taken nevertheless, because it stood still for long, ends at once with
 // exit code 4: it must not write into a folder in which another process works.

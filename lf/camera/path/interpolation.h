@@ -54,7 +54,7 @@ struct Rests {
 //
 //   no rest       CubicHermite()
 //   rest at a     (4 - m) x^3 + (m - 3) x^4, which is 2 x^3 - x^4 for m = 2
-//   rest at b     1 - the same of 1 - x
+//   rest at b     1 - f(1 - x), where f is the polynomial of a rest at a
 //   rests at both 10 x^3 - 15 x^4 + 6 x^5
 //
 // The curve stays between both values if slopes are from 0 to 3 times the slope of the chord. The

@@ -82,8 +82,8 @@ std::vector<double> KeyframeCurve::Slopes(
   std::vector<double> slopes = MonotoneSlopes(times, values);
   const bool is_one_segment = slopes.size() == 2;
   const double chord = slopes[0];  // if it is one segment
-  // Returns the slope at the end that moves of a stretch that is one segment and rests at its other
-  // end. `a` and `b` are the indices of the keys of the segment beside it.
+  // For a stretch of one segment that rests at one end: returns the slope at its other end, from
+  // the segment beside it, whose keys have the indices `a` and `b`.
   const auto slope_beside = [&](size_t a, size_t b) {
     if (b >= keys_.size() || keys_[b].interpolation != Interpolation::kLinear) return 2 * chord;
     const double line = change(keys_[a], keys_[b]) / (keys_[b].time_s - keys_[a].time_s);
@@ -168,7 +168,7 @@ MotionValue KeyframeCurve::AtStretch(const Stretch& stretch, size_t index, doubl
   const double knot_a = stretch.knots[i];
   const double knot_b = stretch.knots[i + 1];
   if (!(knot_b > knot_a)) return a.value;  // keys a and b are the same point: the camera rests
-  // The values of kMonotone are eased themselves, and the knots of the other curves.
+  // kMonotone eases the values themselves; the other curves ease their knots.
   const Rests rests{i == 0 && stretch.rests_at_begin,
                     i + 2 == stretch.knots.size() && stretch.rests_at_end};
   const bool eases_values = curve_ == SmoothCurve::kMonotone;

@@ -67,9 +67,9 @@ enum class SmoothCurve {
 // A key with kEaseIn may be the first of a stretch, and one with kEaseOut the last: the curve then
 // leaves from rest, or comes to rest, and its speed is continuous between. A stretch that is one
 // segment of kEaseIn reaches its key with the speed of the segment after it if that one is linear,
-// but at most 3 times its own mean speed, and otherwise with twice its mean speed; one segment of
-// kEaseOut begins likewise. A segment of kEase is a stretch of its own. The polynomials are those
-// of EasedHermite() (interpolation.h).
+// but at most 3 times its own mean speed, and 0 if the line leads back; otherwise with twice its
+// mean speed. One segment of kEaseOut begins likewise. A segment of kEase is a stretch of its own.
+// The polynomials are those of EasedHermite() (interpolation.h).
 class KeyframeCurve {
  public:
   // keys   at least one; their times are strictly increasing, their values have the same number of

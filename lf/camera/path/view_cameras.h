@@ -31,17 +31,17 @@ inline constexpr double kMostViewAngle_deg = 170;
 // kInput: a tilted focus plane would meet the optical axis of the moved camera behind its lens.
 Result<RenderCamera> MovedAside(const RenderCamera& camera, double offset_w, double convergence_w);
 
-// Returns the cameras of a stereo film: the left and the right eye of frame 1, of frame 2, and so
-// on, at half the separation on both sides of the camera of the frame.
+// Returns the cameras of a stereo film: the left and the right eye of the first frame, of the
+// second, and so on, at half the separation on both sides of the camera of the frame.
 //   separation_w   distance of the eyes in world units, above 0
 //   convergence_w  c, above 0; by default the focus distance of each frame
 // The frame rate stays. Errors as for QuiltPath().
 Result<CameraPath> StereoPath(const CameraPath& path, double separation_w,
                               std::optional<double> convergence_w);
 
-// Returns the cameras of the views of a light field display: those of frame 1 from the leftmost to
-// the rightmost, those of frame 2, and so on. Seen from the middle of the plane of convergence,
-// they fill the angle: neighbours are 2 c tan(angle / 2) / (view_count - 1) apart.
+// Returns the cameras of the views of a light field display: those of the first frame from the
+// leftmost to the rightmost, those of the second, and so on. Seen from the middle of the plane of
+// convergence, they fill the angle: neighbours are 2 c tan(angle / 2) / (view_count - 1) apart.
 //   view_count      at least 2
 //   view_angle_rad  between the outermost views, within the limits above
 //   convergence_w   c, above 0; by default the focus distance of each frame

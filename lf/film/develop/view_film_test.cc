@@ -197,7 +197,7 @@ TEST_F(ViewFilmTest, MomentsAreCountedFromTheFirstFrameOfTheFilm) {
                                Picture<uint8_t>(1, 6, 4, 3), {"R", "G", "B"},
                                {PixelType::kUint8, {}, {}, true}, {{kFirstFrameText, "1001"}}));
   ExpectWords(ErrorOf({ViewLayout::kSideBySide, {}, folder_ / "t.png"}, ErrorKind::kInput),
-              {"frame_1000.png", "states the number 1001 for its first frame"});
+              {"frame_1000.png", "comes before frame 1001"});
 }
 
 TEST_F(ViewFilmTest, AMissingViewIsNamed) {

@@ -74,7 +74,8 @@ Result<std::vector<ViewMoment>> MomentsOfFolder(const fs::path& folder, int view
   LF_ASSIGN_OR_RETURN(const uint32_t of_film, FirstOfFilm(frames.begin()->second));
   if (frames.begin()->first < of_film)
     return InputError(fmt::format(
-        "{}: its film states the number {} for its first frame: expected no frame before it",
+        "{}: comes before frame {}, the first of its film: it belongs to another film; remove it, "
+        "or give another folder",
         frames.begin()->second.string(), of_film));
   const auto views = static_cast<uint32_t>(view_count);
   // The first frame of the first moment, and the last one of the last.

@@ -27,12 +27,11 @@ Result<void> CheckFovUnit(const ForeignPath& path, const std::filesystem::path& 
                           const PathOptions& options) {
   if (options.fov_unit || !path.largest_fov || *path.largest_fov >= kPi) return {};
   return InputError(fmt::format(
-      "{}: the field of view is at most {:.4g}: expected degrees, but so few need a very long "
-      "lens, "
-      "and {:.4g} radians are {:.4g} degrees: convert the path, and state the unit of its fields "
-      "of "
-      "view: {{lfpath fov_unit radians}} or {{lfpath fov_unit degrees}}",
-      file.string(), *path.largest_fov, *path.largest_fov, DegreesFromRadians(*path.largest_fov)));
+      "{}: no field of view exceeds {:.4g}, so that the unit is uncertain: in degrees this needs a "
+      "very long lens, in radians it is {:.4g} degrees: convert the path, and state the unit of "
+      "its "
+      "fields of view: {{lfpath fov_unit radians}} or {{lfpath fov_unit degrees}}",
+      file.string(), *path.largest_fov, DegreesFromRadians(*path.largest_fov)));
 }
 
 Result<double> UnitOf(const ForeignPath& path, const std::filesystem::path& file,

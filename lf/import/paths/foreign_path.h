@@ -36,7 +36,7 @@ struct ForeignPath {
   int views = 1;                          // of each moment (CameraPath::views)
   uint32_t first_frame = 1;               // CameraPath::first_frame
   std::optional<DepthRange> depth_range;  // depths of the scene, if the file states them
-  // The largest number that the file states as a field of view in the unit that is to be found out;
+  // The largest field of view that the file states in a unit that is not known;
   // none if it states no field of view, or if another key says the same in a known unit.
   std::optional<double> largest_fov;
   // Phrases of the warning, such as "no frames per second (30 are used; set {fps})".

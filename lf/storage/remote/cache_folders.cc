@@ -57,8 +57,7 @@ uint64_t BytesOnDisk(const fs::path& folder) {
   return bytes;
 }
 
-// On a disk without locks nothing tells that a program uses a store but the time when it was
-// opened.
+// On a disk without locks, only the time when a store was opened tells whether a program uses it.
 constexpr auto kStaysWithoutLocks = std::chrono::hours(24 * 30);
 
 // Removes the folder of a store, unless a program uses it. Returns true if it is gone.

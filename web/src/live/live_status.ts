@@ -93,9 +93,9 @@ export function differenceText({ used, wanted, needed, broken }: LiveFacts, use:
   const reasons: string[] = [];
   if (counts[USES.indexOf("limit")] > 0) reasons.push("limited by --max-images or its package");
   if (counts[USES.indexOf("angle")] > 0) reasons.push("limited by --max-angle");
-  if (used < ofFrame && wanted < needed) reasons.push("all that the lens sees");
+  if (used < ofFrame && wanted < needed) reasons.push("because memory is limited");
   if (used < ofFrame && broken > 0) reasons.push("broken ones included");
-  if (reasons.length === 0) reasons.push("at the size of the film");
+  if (reasons.length === 0) reasons.push("because the film has another size than this picture");
   return `the frame takes ${shortNumber(ofFrame)}, ${reasons.join(", ")}`;
 }
 

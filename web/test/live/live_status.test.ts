@@ -46,9 +46,12 @@ test("a live picture that has not the LF images of the frame says why", () => {
   assert.equal(differenceText(facts, use(69, "limit")), null);
   assert.equal(differenceText(facts, use(9, "limit")), "the frame takes 9, limited by --max-images or its package");
   assert.equal(differenceText(facts, use(9, "angle")), "the frame takes 9, limited by --max-angle");
-  assert.equal(differenceText(facts, use(70)), "the frame takes 70, at the size of the film");
+  assert.equal(
+    differenceText(facts, use(70)),
+    "the frame takes 70, because the film has another size than this picture",
+  );
   assert.equal(
     differenceText({ ...facts, needed: 800, broken: 2 }, use(20_000)),
-    "the frame takes 20 k, all that the lens sees, broken ones included",
+    "the frame takes 20 k, because memory is limited, broken ones included",
   );
 });
