@@ -15,15 +15,26 @@
 #include "lf/camera/path/yaml_schema.h"
 #include "lf/camera/path/yaml_tree.h"
 #include "lf/core/file.h"
+#include "lf/core/parse_number.h"
 
 namespace lf {
 namespace {
 
+// Returns a rate, which may be a fraction, as video programs write rates: 24000/1001.
+std::optional<double> ReadRate(const YamlNode& node, YamlErrors* errors) {
+  constexpr NumberRange kRates = NumberRange::Within(1e-3, 1e6);
+  if (node.kind != YamlNode::Kind::kPlain || node.text.find('/') == std::string::npos)
+    return ReadNumber(node, "fps", kRates, errors);
+  const std::optional<double> rate = ParseRate(node.text);
+  if (rate && kRates.Holds(*rate)) return rate;
+  AddExpected(node, "fps", "a rate from 0.001 to 1e+06, such as 24 or 24000/1001", errors);
+  return std::nullopt;
+}
+
 // Reads the keys `fps`, `frames` and `first_frame`.
 void ReadClock(YamlMap* file, PathDescription* path) {
   if (const YamlEntry* fps = file->Require("fps", "fps: 30"))
-    path->fps =
-        ReadNumber(*fps->value, "fps", NumberRange::Within(1e-3, 1e6), file->errors()).value_or(30);
+    path->fps = ReadRate(*fps->value, file->errors()).value_or(30);
   if (const YamlEntry* frames = file->Require("frames", "frames: 60"))
     path->frame_count =
         ReadInteger(*frames->value, "frames", 1, kMostFrames, file->errors()).value_or(1);

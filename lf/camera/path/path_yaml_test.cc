@@ -114,6 +114,13 @@ TEST(PathYaml, CountsAreWholeAndBounded) {
     path.clock = "frames: 3\nfps: " + fps + tail;
     EXPECT_TRUE(Says(path, fps + tail, "fps: expected a number"));
   }
+  for (const std::string fps : {"24000/0", "1/2/3", "24000/", "/1001", "9e9/1", "1/1001000"}) {
+    path.clock = "frames: 3\nfps: " + fps + tail;
+    EXPECT_TRUE(Says(path, fps + tail, "fps: expected a rate from 0.001 to 1e+06")) << fps;
+  }
+  path.clock = "frames: 3\nfps: 24000/1001" + tail;
+  ASSERT_EQ(path.Error(), "");
+  EXPECT_EQ(path.Parse()->fps, 24000.0 / 1001);
   for (const std::string size : {"[0, 1]", "[1]", "[70000, 1]", "[65536, 65536]", "12", "[1, x]"}) {
     path.clock = "fps: 30\nframes: 3\nresolution: " + size + "\n";
     EXPECT_TRUE(path.Error().starts_with("4:1")) << path.Error();

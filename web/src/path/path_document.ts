@@ -86,7 +86,8 @@ export class PathDocument {
     const key = this.keyIn(sectionPath(spec), spec.keys);
     if (!key) return undefined;
     const value = this.yaml.value([...sectionPath(spec), key]) as ConstantValue;
-    return typeof value === "number" ? value * this.scale(spec.unit, key) : value;
+    if (typeof value === "number") return value * this.scale(spec.unit, key);
+    return name === "fps" && typeof value === "string" ? rateOf(value) : value;
   }
 
   // ------------------------------------------------------------------------------------ edits
@@ -480,4 +481,10 @@ export class PathDocument {
       if (spec.name === "orientation") for (const key of ["up", "follow"]) this.removeKey(["camera"], [key]);
     });
   }
+}
+
+// Returns the rate of a fraction such as 24000/1001; NaN if the text is none.
+function rateOf(text: string): number {
+  const parts = /^([0-9.]+)\/([0-9.]+)$/.exec(text);
+  return parts ? Number(parts[1]) / Number(parts[2]) : NaN;
 }

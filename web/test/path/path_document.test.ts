@@ -126,6 +126,12 @@ test("keys are sorted by time, and one at the same time is replaced", () => {
   near(film.cameras[15].focus_distance_w, 0.7, 1e-9);
 });
 
+test("a rate may be a fraction", () => {
+  const path = PathDocument.parse(kSmall.replace("fps: 10 ", "fps: 24000/1001 "));
+  assert.equal(path.constant("fps"), 24000 / 1001);
+  assert.ok(Number.isNaN(PathDocument.parse(kSmall.replace("fps: 10 ", "fps: 24/a ")).constant("fps")));
+});
+
 test("the key of a frame is found again although its time was rounded", () => {
   const path = PathDocument.parse(kSmall.replace("fps: 10 ", "fps: 30 "));
   path.setKeyframe("focus_distance", 100 + 1 / 3, 0.5);
