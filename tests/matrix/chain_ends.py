@@ -95,7 +95,7 @@ OTHERS = ("--calibration-only", "--overwrite", "--force", "--clip", "--scale", "
           "--csv", "--fps", "--stereo-mm", "--clamp-frames", "--packages", "--frames-per-package", "--balance",
           "--shard-size", "--view", "--display", "--no-contact-sheet", "--back-and-forth", "--show", "--gain",
           "--serve", "--allow-origin", "--export-images", "--export-live", "--live-memory", "--by-resolution",
-          "--device", "--tile", "--first-frame", "--fov-unit")
+          "--device", "--tile", "--first-frame")
 
 
 def options_of(programs):
