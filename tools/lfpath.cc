@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -403,12 +404,22 @@ void NameFromOutput(const Arguments& a, lf::CameraPath* path) {
     path->focal_surface->file = (from / file).lexically_normal().lexically_relative(to).string();
 }
 
-// Chooses the views, and their size, that a display is given.
-void ApplyDevice(Arguments* a) {
-  if (a->device.empty()) return;
+// Chooses the views, and their size, that a display is given. kUsage: frames of
+// --resolution have another shape than the display.
+lf::Result<void> ApplyDevice(Arguments* a) {
+  if (a->device.empty()) return {};
   const lf::QuiltDevice& device = lf::QuiltDeviceNamed(a->device);
   a->quilt = {device.grid.columns, device.grid.rows};
-  if (!a->resolution) a->resolution = {device.view().width, device.view().height};
+  const lf::ViewSize least = device.view();
+  if (!a->resolution) a->resolution = {least.width, least.height};
+  const auto [width, height] = *a->resolution;
+  constexpr double kMostOff = 0.01;  // as lfquilt allows
+  const double aspect = static_cast<double>(width) / height;
+  if (std::abs(aspect / device.aspect() - 1) <= kMostOff) return {};
+  return lf::UsageError(fmt::format(
+      "--resolution {}x{}: has width / height {:.3f}, but the views of --device {} have {:.3f}: "
+      "leave --resolution out, which makes {}x{}",
+      width, height, aspect, a->device, device.aspect(), least.width, least.height));
 }
 
 lf::Result<void> Run(const Arguments& a, bool json) {
@@ -438,8 +449,8 @@ int main(int argc, char** argv) {
                                     "Infinite numbers are null.",
                             .verbose = true,
                             .quiet = true});
-  return program.Run(argc, argv, [&] {
-    ApplyDevice(&arguments);
+  return program.Run(argc, argv, [&]() -> lf::Result<void> {
+    LF_RETURN_IF_ERROR(ApplyDevice(&arguments));
     return Run(arguments, program.common().json);
   });
 }

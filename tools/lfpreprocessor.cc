@@ -242,7 +242,7 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
     options.light_field_options = words.WordsToKeep();
   }
   if (a.frames.IsNone(options.frames)) return ReportNoFrames(a, common, light_field, path);
-  lf::WarnOfPinhole(light_field, path, options.frames, options.film, a.light_field.path, a.path);
+  lf::WarnOfPinhole(light_field, path, options.film, a.light_field.path, a.path);
   options.interrupted = &interrupted;
   lf::ThreadPool pool(common.threads);
   // Packages hold the cameras of the whole path.

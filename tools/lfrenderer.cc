@@ -87,8 +87,7 @@ lf::Result<Rendered> RenderLightField(const lf::RenderArguments& arguments,
   LF_ASSIGN_OR_RETURN(lf::RenderOptions options, arguments.MakeOptions(common, path.frames()));
   if (arguments.HasNoFrame(options)) return NoFrames(arguments, std::move(options));
   if (!arguments.densify)
-    lf::WarnOfPinhole(light_field, path, options.frames, options.film, arguments.inputs[0],
-                      arguments.inputs[1]);
+    lf::WarnOfPinhole(light_field, path, options.film, arguments.inputs[0], arguments.inputs[1]);
   options.signals = signals;
   // A render compares the surfaces of all frames of earlier renders that it finds.
   const bool has_other_frames =

@@ -27,21 +27,18 @@ std::string FNumberText(double f_number) { return fmt::format("{:.2g}", f_number
 
 }  // namespace
 
-void WarnOfPinhole(const LightField& light_field, const CameraPath& path,
-                   std::span<const FrameId> frames, const FilmSettings& film,
+void WarnOfPinhole(const LightField& light_field, const CameraPath& path, const FilmSettings& film,
                    const std::string& light_field_name, const std::string& path_name) {
   if (IsMeant(light_field, film)) return;
-  const auto has_lens = [](const RenderCamera& camera) { return camera.aperture.radius_w > 0; };
-  if (frames.empty() ? std::any_of(path.cameras.begin(), path.cameras.end(), has_lens)
-                     : std::any_of(frames.begin(), frames.end(),
-                                   [&](FrameId frame) { return has_lens(path.Camera(frame)); }))
+  if (std::any_of(path.cameras.begin(), path.cameras.end(),
+                  [](const RenderCamera& camera) { return camera.aperture.radius_w > 0; }))
     return;
-  const size_t count = frames.empty() ? path.frame_count() : frames.size();
+  const size_t count = path.frame_count();
   std::string words = fmt::format(
       "the aperture is 0 in {}: a pinhole, which sees few LF cameras and has no blur. "
       "To film a pinhole without this warning, add --lens-weights hat, which changes no bit",
       count == 1 ? "the frame" : fmt::format("all {} frames", count));
-  const RenderCamera& first = frames.empty() ? path.cameras.front() : path.Camera(frames.front());
+  const RenderCamera& first = path.cameras.front();
   const std::optional<ProposedLens> lens =
       ProposeLens(light_field, first.pinhole, first.focus_distance_w);
   if (!lens || !(first.focal_length_w > 0)) return LogWarning("{}", words);

@@ -45,7 +45,7 @@ def said_at_import(folder, name):
     if name:
         (package / name).write_bytes(b"")
     done = subprocess.run([sys.executable, "-c", "import lfrendertools"], env={"PYTHONPATH": str(folder)},
-                          capture_output=True, text=True)
+                          cwd=folder, capture_output=True, text=True)
     assert done.returncode == 1
     return done.stderr.strip().splitlines()[-1]
 

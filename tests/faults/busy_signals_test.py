@@ -81,7 +81,7 @@ class BusySignalsTest(unittest.TestCase):
             "lfrenderer": [field, large, "-o", out],
             "lfr": ["synth", *synth],
             "lffocus stack": [field, large, "-o", out / "stack.exr", *depths],
-            "lffocus epi": [field, "-o", out / "epi.png", "--row", 1500],
+            "lffocus epi": [field, "-o", out / "epi.png", "--row", 1500, "--lines", "linear", "--count", 8000],
             "lffocus views": [field, "-o", out / "views", "--grid", "5x5", "--focus-distance", 3],
             "lffocus depth": [field, large, "-o", out / "depth.exr", *depths],
             "lffocus sharp": [field, large, "-o", out / "sharp.exr", *depths],

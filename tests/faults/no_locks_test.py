@@ -163,7 +163,7 @@ class NoLocksTest(ProgramTestCase):
             self.skipTest("the render was over before it could look")
         self.assertEqual(first.returncode, 4, said)
         self.assertIn("lock.claims/", said)
-        self.assertIn("ends at once", said.splitlines()[-1])
+        self.assertIn("This program ends", said.splitlines()[-1])
 
     def test_lfsubmit_renders_and_continues(self):
         expected = self.expected()

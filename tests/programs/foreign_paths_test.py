@@ -165,7 +165,7 @@ class ForeignPathsTest(ProgramTestCase):
         key = {"R": [0, 0, 0, 1], "T": [0, 0, 0], "slice": 1, "scale": 1, "fov": 0.87, "aperture_size": 0}
         for file in self.write("radians.json", path), chan, self.write("base_cam.json", {"path": [key]}):
             for program in INFO, PATH:
-                self.fails(3, ["expected degrees", "lfpath --fov-unit radians"], program, file)
+                self.fails(3, ["so that the unit is uncertain", "lfpath --fov-unit radians"], program, file)
             self.succeeds(PATH, file, "--fov-unit", "degrees", "-q")
         told = json.loads(self.succeeds(PATH, self.folder / "radians.json", "--fov-unit", "radians", "--json"))
         for camera, facts in zip(self.cameras, told["cameras"]):

@@ -74,6 +74,10 @@ class FrameNumbersTest(ProgramTestCase):
         packages = self.folder / "packages"
         self.succeeds(PREPROCESSOR, self.field, self.plate, "-o", packages, "--packages", 2, "-q")
         self.is_the_film(self.render(sorted(packages.glob("*.lfp")), "of-packages"))
+        # The same film with other numbers is another film.
+        self.succeeds(PREPROCESSOR, self.field, self.one, "-o", self.folder / "one", "--packages", 2, "-q")
+        mixed = [sorted(packages.glob("*.lfp"))[0], sorted((self.folder / "one").glob("*.lfp"))[1]]
+        self.fails(3, ["was made for another camera path"], RENDERER, *mixed, "-o", self.folder / "mixed")
         part = self.folder / "part"
         self.succeeds(PREPROCESSOR, self.field, self.plate, "-o", part, "--frames", "1003-1004", "-q")
         self.assertEqual([file.name for file in part.glob("*.lfp")], ["package-0000-of-frames-1003-1004.lfp"])

@@ -302,7 +302,8 @@ class StereoTest(ProgramTestCase):
         small = json.loads(self.succeeds(PATH, self.path, "--device", "go", "--resolution", "36x64", "--view-angle", 20,
                                          "--json"))
         self.assertEqual((small["frames"], small["resolution"]), (2 * 66, [36, 64]))
-        for words in (("--device", "go", "--quilt", "3x2"), ("--device", "go", "--stereo", 1), ("--device", "phone")):
+        for words in (("--device", "go", "--quilt", "3x2"), ("--device", "go", "--stereo", 1), ("--device", "phone"),
+                      ("--device", "portrait", "--resolution", "600x560")):
             self.assertEqual(self.call(PATH, self.path, *words).returncode, 2, words)
 
     def test_views_are_squeezed_into_tiles(self):

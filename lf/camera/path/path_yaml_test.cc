@@ -203,7 +203,8 @@ TEST(PathYaml, KeysFollowEachOtherInTime) {
   TestPath path;
   path.more = "keyframes: {roll_deg: [{time: 1, value: 0}, {time: 1, value: 5}]}\n";
   EXPECT_TRUE(Says(path, "{time: 1, value: 5",
-                   "keyframes.roll_deg: the key at 1 s must be later than the previous"));
+                   "keyframes.roll_deg: the key at 1 s must be at least a microsecond "
+                   "later than the previous"));
   path.more = "keyframes: {roll_deg: [{time: -1, value: 0}]}\n";
   EXPECT_TRUE(Says(path, "-1", "keyframes.roll_deg.time: expected a number at least 0"));
   path.more = "keyframes: {roll_deg: []}\n";

@@ -224,7 +224,8 @@ std::optional<KeyframeCurve> QuantityReader::ReadKeyframes(const QuantitySpec& s
     if (!key) return std::nullopt;
     if (!keys.empty() && key->time_s < keys.back().time_s + kLeastKeyDistance_s) {
       errors_->Add(item->place,
-                   fmt::format("{}: the key at {} s must be later than the previous key, at {} s",
+                   fmt::format("{}: the key at {} s must be at least a microsecond later than the "
+                               "previous key, at {} s",
                                keyframes.label, key->time_s, keys.back().time_s));
       return std::nullopt;
     }

@@ -71,6 +71,12 @@ TEST_F(OpenPackagesTest, EveryChoiceOfTheFilmIsCompared) {
   expect([](Package* p) { p->choices.seed = 4; }, "another order");
   expect([](Package* p) { p->choices.order = ImageOrder::kArea; }, "another order");
   expect([](Package* p) { p->path.cameras[2].aperture.blades = 7; }, "another camera path");
+  expect(
+      [](Package* p) {
+        p->path.first_frame = 1001;
+        for (PackageFrame& frame : p->frames) frame.id.value += 1000;
+      },
+      "another camera path");
   expect([](Package* p) { p->whole.image_count = 5; }, "another light field");
 }
 

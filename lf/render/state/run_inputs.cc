@@ -177,6 +177,8 @@ std::string HashOfCameras(const CameraPath& path) {
   ValueHasher hasher;
   for (const RenderCamera& camera : path.cameras) hasher.Add(CameraHash(camera));
   for (const RenderCamera& camera : path.instants) hasher.Add(CameraHash(camera));
+  // Films that are numbered from 1 keep the hash that reports and checkpoints have recorded.
+  if (path.first_frame != 1) hasher.Add(fmt::format("first frame {}", path.first_frame));
   return hasher.Text();
 }
 

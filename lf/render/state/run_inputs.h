@@ -79,8 +79,8 @@ RunInputs InputsOfPicture(const RunChoices& choices);
 // file does not have this input.
 inline constexpr const char* kFilmOfPackage = "picture.film";
 
-// Returns a hash of all cameras of a film. Packages that are rendered into one folder must have the
-// same hash.
+// Returns a hash of all cameras of a film and of the number of its first frame. Packages that are
+// rendered into one folder must have the same hash.
 std::string HashOfCameras(const CameraPath& path);
 
 // Returns a hash of what decides which rays the cameras of a film take: everything but the numbers

@@ -31,6 +31,9 @@ TEST(RunInputs, AnotherShutterIsAnotherInput) {
   const RunInputs with = InputsOfFrame(path, FrameId{2});
   EXPECT_EQ(FirstDifference(without, with)->key, "frame.shutter");
   EXPECT_NE(HashOfCameras(path), cameras);
+  CameraPath numbered = path;
+  numbered.first_frame = 1001;
+  EXPECT_NE(HashOfCameras(numbered), HashOfCameras(path));
   CameraPath moved = path, longer = path;
   moved.instants[3].pinhole.cam_from_world.translation.x() += 1e-9;
   longer.shutter.angle_deg = 90;
