@@ -98,7 +98,7 @@ class ResumeTest(unittest.TestCase):
         lock = self.partial(name) / "lock"
         while process.poll() is None:
             try:
-                if lock.read_text().strip() == str(process.pid):
+                if lock.read_text().split()[:1] == [str(process.pid)]:
                     return
             except FileNotFoundError:
                 pass
