@@ -254,9 +254,9 @@ TEST_F(NerfstudioFileTest, MissingQuantitiesAreCompletedOrReplaced) {
 
 TEST_F(NerfstudioFileTest, RadiansAreAskedFor) {
   Write("camera_path.json", With(kNerfstudioText, "90", "0.87"));
-  ExpectPathError(
-      OpenPath(folder_ / "camera_path.json", {}), (folder_ / "camera_path.json").string(),
-      {"is at most 0.87", "0.87 radians are 49.85 degrees", "{lfpath fov_unit radians}"});
+  ExpectPathError(OpenPath(folder_ / "camera_path.json", {}),
+                  (folder_ / "camera_path.json").string(),
+                  {"exceeds 0.87", "in radians it is 49.85 degrees", "{lfpath fov_unit radians}"});
   const double focal_px = 50 / std::tan(0.435);
   EXPECT_NEAR(Camera({.fov_unit = FovUnit::kRadians}).pinhole.intrinsics.fy_px, focal_px, 1e-9);
   EXPECT_NEAR(Camera({.fov_unit = FovUnit::kDegrees}).pinhole.intrinsics.fy_px,

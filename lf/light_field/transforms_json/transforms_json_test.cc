@@ -224,7 +224,7 @@ TEST(TransformsJson, WhatIsNoTransformsJsonIsAnError) {
   ExpectError("{\"fl_x\": NaN,}", {"is not JSON"});
   ExpectError("{\"fl_x\": 1e999}", {"is not JSON"});
   ExpectError("{\"a\": \"\xff\"}", {"is not JSON", "UTF-8"});
-  ExpectError("[1, 2]", {"holds no object"});
+  ExpectError("[1, 2]", {"holds a list", "no intrinsics"});
   ExpectError("7", {"holds no object"});
   ExpectError("{}", {"\"frames\" is missing"});
   ExpectError("{\"frames\": {\"a\": {}}}", {"\"frames\" is an object"});
