@@ -74,7 +74,7 @@ class FrameNumbersTest(ProgramTestCase):
         packages = self.folder / "packages"
         self.succeeds(PREPROCESSOR, self.field, self.plate, "-o", packages, "--packages", 2, "-q")
         self.is_the_film(self.render(sorted(packages.glob("*.lfp")), "of-packages"))
-        # The same film with other numbers is another film.
+        # A film with other numbers is another film, although its cameras are equal.
         self.succeeds(PREPROCESSOR, self.field, self.one, "-o", self.folder / "one", "--packages", 2, "-q")
         mixed = [sorted(packages.glob("*.lfp"))[0], sorted((self.folder / "one").glob("*.lfp"))[1]]
         self.fails(3, ["was made for another camera path"], RENDERER, *mixed, "-o", self.folder / "mixed")

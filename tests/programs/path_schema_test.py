@@ -52,7 +52,8 @@ keyframes:
 HEIGHTS = {"surface": "map.png", "kind": "height", "origin": [0, 0, 0], "cell": 0.5}
 # Keys and their new values, which the schema and the programs refuse. None removes the key.
 FAULTS = [
-    ("format", "lfpath 2"), ("fps", 0), ("fps", "fast"), ("fps", "24000/"), ("fps", None), ("frames", 1.5), ("frames", 0),
+    ("format", "lfpath 2"), ("fps", 0), ("fps", "fast"), ("fps", "24000/"), ("fps", None), ("frames", 1.5),
+    ("frames", 0),
     ("frames", 1000001), ("frames", None), ("resolution", [80]), ("resolution", [80, 0]), ("resolution", [80, 65537]),
     ("resolution", "80x60"), ("unit_m", 0), ("views", 0), ("views", 1.5), ("views", [2]),
     ("colour", 1), ("camera", None), ("camera", []), ("lens", None),
