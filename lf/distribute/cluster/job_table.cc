@@ -71,7 +71,7 @@ std::vector<std::string> Row(const TaskStatus& task, bool is_package) {
 }
 
 // Returns true if the job is not done, and continues only if it is resumed.
-bool Rests(const ClusterJob& job, const JobStatus& status) {
+bool NeedsResume(const ClusterJob& job, const JobStatus& status) {
   const bool has_tasks = std::any_of(status.packages.begin(), status.packages.end(),
                                      [](const TaskStatus& task) { return task.IsQueued(); });
   if (has_tasks || status.finishing.IsQueued()) return false;
@@ -127,7 +127,7 @@ std::string JobTable(const ClusterJob& job, const JobStatus& status) {
     line.erase(line.find_last_not_of(' ') + 1);
     text += line + "\n";
   }
-  if (Rests(job, status)) text += "to continue: " + ResumeCommand(job) + "\n";
+  if (NeedsResume(job, status)) text += "to continue: " + ResumeCommand(job) + "\n";
   return text;
 }
 

@@ -48,7 +48,7 @@ TEST_F(JobTableTest, EachTaskHasARow) {
   EXPECT_EQ(table.find("LF images"), std::string::npos) << "an empty column\n" << table;
 }
 
-TEST_F(JobTableTest, AJobThatRestsSaysHowToContinue) {
+TEST_F(JobTableTest, AJobThatNeedsResumeSaysHowToContinue) {
   const std::string advice = "\nto continue: lfsubmit --resume frames\n";
   EXPECT_EQ(JobTable(job_, status_).find("to continue"), std::string::npos);
   for (const TaskPhase phase : {TaskPhase::kInterrupted, TaskPhase::kFailed, TaskPhase::kWaiting}) {
