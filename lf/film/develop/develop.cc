@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lf/film/develop/channel_fill.h"
+#include "lf/film/develop/completion_share.h"
 #include "lf/film/develop/develop_opacity.h"
 #include "lf/film/develop/guard_share.h"
 #include "lf/film/plate/sensor_plate.h"
@@ -18,20 +19,13 @@ namespace {
 
 constexpr int kChannels = SensorPlate::kChannels;
 
-// Returns the weight of the completion (the interpolated part of the frame) in a channel of element
-// (x, y) that has `count` collected rays: Completion::share, but 1 if `count` is 0 and the share is
-// not; 0 without completion.
-double ShareOf(const Completion* completion, int x, int y, uint64_t count) {
-  if (completion == nullptr) return 0;
-  const double share = completion->share.at(x, y);
-  return count == 0 && share > 0 ? 1 : share;
-}
-
-// Returns the number of rays that decides whether a channel is filled: `count`, or the largest
-// uint32_t if the completion has a share in the element, which then needs no fill.
-uint32_t KnownCount(const Completion* completion, int x, int y, uint32_t count) {
-  const bool is_completed = completion != nullptr && completion->share.at(x, y) > 0;
-  return is_completed ? std::numeric_limits<uint32_t>::max() : count;
+// Returns true if the images of the completion are those that the plate needs.
+bool Fits(const Completion& completion, const SensorPlate& plate) {
+  const auto has_size_of_plate = [&](const Image<float>& image) {
+    return image.width() == plate.width() && image.height() == plate.height();
+  };
+  return has_size_of_plate(completion.rgb) && has_size_of_plate(completion.share) &&
+         (plate.has_opacity() ? has_size_of_plate(completion.opacity) : completion.opacity.empty());
 }
 
 // Computes the averages, ray counts and coverage of the elements of row y. Returns, for each
@@ -55,8 +49,8 @@ std::array<bool, kChannels> AverageRow(const SensorPlate& plate, const DevelopOp
       if (rays.count == 0) std::swap(rays, all);
       frame.ray_count.at(x, y, c) = static_cast<uint32_t>(
           std::min<uint64_t>(rays.count, std::numeric_limits<uint32_t>::max()));
-      is_thin[c] |= KnownCount(options.completion, x, y, frame.ray_count.at(x, y, c)) < rays_needed;
-      const double share = ShareOf(options.completion, x, y, rays.count);
+      is_thin[c] |= KnownCount(options.completion, x, y, rays.count) < rays_needed;
+      const double share = CompletionShareOf(options.completion, x, y, rays.count);
       if (rays.count == 0 && share == 0) continue;
       double average = 0;
       if (rays.count > 0) {
@@ -69,8 +63,8 @@ std::array<bool, kChannels> AverageRow(const SensorPlate& plate, const DevelopOp
     }
     frame.coverage.at(x, y) = static_cast<float>(collected) / kChannels;
     if (options.completion != nullptr)
-      frame.interpolated.at(x, y) =
-          static_cast<float>(ShareOf(options.completion, x, y, static_cast<uint64_t>(collected)));
+      frame.interpolated.at(x, y) = static_cast<float>(
+          CompletionShareOf(options.completion, x, y, static_cast<uint64_t>(collected)));
   }
   return is_thin;
 }
@@ -79,7 +73,7 @@ std::array<bool, kChannels> AverageRow(const SensorPlate& plate, const DevelopOp
 
 DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, ThreadPool& pool) {
   LF_CHECK(options.scale > 0 && options.fill_radius_px >= 0);
-  LF_CHECK(options.completion == nullptr || plate.kind() == PlateKind::kColours);
+  LF_CHECK(options.completion == nullptr || Fits(*options.completion, plate));
   LF_CHECK(!plate.is_guarded() || options.opaque > options.transparent);
   const int width = plate.width(), height = plate.height();
   const uint32_t rays_needed = std::max(options.smooth_below, 1u);

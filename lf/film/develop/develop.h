@@ -16,13 +16,19 @@ namespace lf {
 
 class SensorPlate;  // film/plate/sensor_plate.h
 
-// The part of a frame that was interpolated from rebinned rays (render/hybrid/rebinned_rays.h).
+// The part of a frame that was interpolated from kept rays: from rebinned rays
+// (render/hybrid/rebinned_rays.h), or from rays on a plate of their own (completion.h).
 struct Completion {
   Image<float> rgb;  // [height][width][3], as 16-bit values like those of the plate
   // [height][width] Weight of rgb, in [0, 1], in an element that also has collected rays; the mean
   // of these rays has the weight 1 - share. A channel without collected rays takes rgb alone. Where
-  // share is 0, rgb is unknown and not used.
+  // share is 0, rgb and opacity are unknown and not used.
   Image<float> share;
+  // [height][width] as 16-bit values like those of the plate's opacity channel
+  // (DevelopOptions::transparent to DevelopOptions::opaque). It is mixed like a colour. The light
+  // of rgb, without the pedestal, is multiplied by it, as on the plate. Empty if the light field
+  // has no opacities.
+  Image<float> opacity = {};
 };
 
 // Default and largest value of DevelopOptions::fill_radius_px, in elements. The default is enough
@@ -60,8 +66,9 @@ struct DevelopOptions {
   // given, elements that show several of them take all rays whatever their trust.
   const Image<float>* effective_count = nullptr;
 
-  // Light interpolated from rebinned rays. If given, it is mixed with collected light, and used
-  // alone in elements without rays. Must be null unless the plate has only colours.
+  // Light interpolated from kept rays. If given, it is mixed with collected light, and used alone
+  // in elements without rays. Its images must have the size of the plate, and it must have
+  // opacities if the plate has them, otherwise none.
   const Completion* completion = nullptr;
 
   // If given, any thread calls it, before each row and at least once for every 64 values (channels
@@ -85,8 +92,9 @@ inline constexpr double kTrustTo = 0.45;
 // are visibly wrong (render/collect/opacity_and_trust.h).
 inline constexpr double kDoubtfulTrust = 0.8;
 
-// Averages the rays of every element and channel, and mixes (1 - share) of the average with share
-// of the completion; the completion is taken alone if no ray was collected. An element without
+// Averages the rays of every element and channel, and mixes the average A with the completion I:
+// (1 - share) A + share I. The completion is taken alone if no ray was collected. A frame whose
+// completion is its average is therefore the frame without completion. An element without
 // completion that has no ray, or fewer than smooth_below, takes the inverse-distance mean of
 // collected elements of the channel,
 //
@@ -98,14 +106,16 @@ inline constexpr double kDoubtfulTrust = 0.8;
 // without a ray, and kSmoothRadius_px otherwise, even if it contains fewer. The element's own
 // value, if it has one, is one of the v_i, with d = 0.5. Elements with completion count as
 // collected, with enough rays. Then Develop() applies white balance and linear_srgb_from_camera.
-// The average of a guarded plate is R + m t (V - R), where R is the average of the recorded rays, V
-// that of all rays, m grows from 0 to 1 like s^2 (3 - 2 s) where s is the share of defocus from
+// The average A of a guarded plate is R + m t (V - R), where R is the average of the recorded rays,
+// V that of all rays, m grows from 0 to 1 like s^2 (3 - 2 s) where s is the share of defocus from
 // kGuardFrom to kGuardTo, and t = 1 - p (1 - S), where S grows likewise where s is the trust from
 // kTrustFrom to kTrustTo, and p falls from 1 to 0 where the effective number of recorded LF images
 // grows from 1 to 2; p = 1 if the number is not known. Without recorded rays it is V, whatever the
-// trust. The opacity has the same formula.
-// Opacities are averaged and filled like a colour, from the same neighbours, and clipped. Counts
-// above 2^32 - 1 become 2^32 - 1. The bits do not depend on the number of threads.
+// trust. The opacity has the same formula. DevelopedFrame::densified, trust and doubtful_count
+// describe A, whatever the share of the completion.
+// Opacities are averaged, mixed and filled like a colour, from the same neighbours, and clipped.
+// Each colour is the light times the opacity, so that means and mixtures of both belong together.
+// Counts above 2^32 - 1 become 2^32 - 1. The bits do not depend on the number of threads.
 DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, ThreadPool& pool);
 
 }  // namespace lf

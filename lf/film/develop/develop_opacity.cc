@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
-#include <limits>
 #include <utility>
 
 #include "lf/core/check.h"
 #include "lf/film/develop/channel_fill.h"
+#include "lf/film/develop/completion_share.h"
 #include "lf/film/develop/guard_share.h"
 
 namespace lf {
@@ -16,7 +16,6 @@ namespace lf {
 Image<float> DevelopOpacity(const SensorPlate& plate, const DevelopOptions& options,
                             const std::function<bool()>& is_interrupted, ThreadPool& pool) {
   LF_CHECK(plate.has_opacity() && options.opaque > options.transparent);
-  constexpr uint64_t kMostCount = std::numeric_limits<uint32_t>::max();
   const int width = plate.width(), height = plate.height();
   const uint32_t rays_needed = std::max(options.smooth_below, 1u);
   Image<float> mean(width, height);
@@ -32,11 +31,13 @@ Image<float> DevelopOpacity(const SensorPlate& plate, const DevelopOptions& opti
         if (densified > 0) all = plate.At(x, y, plate.all_opacity_channel());
         if (rays.count == 0) std::swap(rays, all);
       }
-      count.at(x, y) = static_cast<uint32_t>(std::min(rays.count, kMostCount));
+      count.at(x, y) = KnownCount(options.completion, x, y, rays.count);
       if (count.at(x, y) < rays_needed) is_thin = true;
-      if (rays.count == 0) continue;
-      double average = rays.Mean();
+      const double share = CompletionShareOf(options.completion, x, y, rays.count);
+      if (rays.count == 0 && share == 0) continue;
+      double average = rays.count > 0 ? rays.Mean() : 0;
       if (all.count > 0) average += densified * (all.Mean() - average);
+      if (share > 0) average += share * (options.completion->opacity.at(x, y) - average);
       mean.at(x, y) = static_cast<float>((average - options.transparent) /
                                          (options.opaque - options.transparent));
     }

@@ -31,11 +31,11 @@ struct DevelopedFrame {
   // without lens weights. Develop() leaves it empty: its callers, such as RenderFrame(), fill it.
   // With lens weights, ray_count holds sums of weights.
   Image<float> effective_count = {};
-  // [height][width] share of each element that was interpolated from rebinned rays; empty without
-  // completion
+  // [height][width] share of each element that was interpolated from kept rays (completion.h);
+  // empty without completion
   Image<float> interpolated = {};
-  // [height][width] share of each element that shows the rays of all LF images, virtual ones
-  // included, instead of those of recorded LF images alone; empty unless the plate is guarded
+  // [height][width] share of the collected light of each element that is of all LF images, virtual
+  // ones included, instead of recorded LF images alone; empty unless the plate is guarded
   Image<float> densified = {};
   // [height][width] mean trust in the rays of all LF images, from 0 to 1: recorded rays have 1,
   // virtual ones what their LF images state (LfPixels::trust). It is 1 where the element is in
