@@ -99,8 +99,8 @@ void ThroughArguments::AddTo(CLI::App& app) {
   a.settings.AddTo(
       look, "max_images",
       "Maximum number of LF images per frame (all)\n"
-      "A frame has the statistic of the rays of N LF images, which are drawn at random "
-      "from those that contribute to it: more noise, in less time and memory.");
+      "A frame has the statistic of the rays of N of the LF images that contribute to it, spread "
+      "evenly over its lens: more noise, in less time and memory.");
   look.AddChoice("--lf-pixels", a.lf_pixels, {"auto", "areas", "points"},
                  "What LF pixels show, for --filter prefiltered\n"
                  "areas: the mean light of their area, as in photographs\n"
