@@ -27,6 +27,17 @@ uint8_t DisplayValue(double linear) {
   return values[static_cast<size_t>(std::clamp(linear, 0.0, 1.0) * kSteps + 0.5)];
 }
 
+// Returns the side of the squares of LF pixels that are one pixel of a picture: the smallest one
+// with which the picture is not too large, and that LF images can be loaded reduced by, except
+// for 3.
+int SquareSide(const Intrinsics& k, int max_side_px) {
+  const int largest_px = std::max(k.width_px, k.height_px), most_px = std::max(1, max_side_px);
+  const int least = std::max(1, (largest_px + most_px - 1) / most_px);
+  for (const int side : {1, 2, 3, 4, 6, 8, 12})
+    if (least <= side) return side;
+  return (least + 7) / 8 * 8;
+}
+
 // Returns sums over the unmasked pixels of a square: R, G, B, and the number of these pixels.
 std::array<double, 4> SumOf(const LfPixels& pixels, const PixelRect& square) {
   std::array<double, 4> sum = {};
@@ -50,15 +61,15 @@ std::array<uint8_t, 3> DisplayColour(const RadianceEncoding& encoding, const Vec
 Result<Image<uint8_t>> LfPicture(const LightField& light_field, const LfImageStore& store,
                                  LfImageId id, int max_side_px) {
   const Intrinsics& k = light_field.Camera(id).intrinsics;
-  const PixelRect whole = {0, 0, k.width_px, k.height_px};
+  const int side = SquareSide(k, max_side_px);
+  LfPixels pixels;
   LF_ASSIGN_OR_RETURN(
-      const LfPixels pixels,
-      LoadWithoutThrowing(store, id, whole, light_field.ImagePath(id).string(), LfPixels()));
-  const int factor =
-      std::max(1, (std::max(k.width_px, k.height_px) + max_side_px - 1) / std::max(1, max_side_px));
+      const int reduction,
+      LoadReducedWithoutThrowing(store, id, side, k, light_field.ImagePath(id).string(), &pixels));
+  const int factor = side / reduction;  // what is left to reduce
   const RadianceEncoding& encoding = light_field.encoding;
-  Image<uint8_t> picture((k.width_px + factor - 1) / factor, (k.height_px + factor - 1) / factor, 3,
-                         kMaskedGrey);
+  Image<uint8_t> picture((pixels.rect.width() + factor - 1) / factor,
+                         (pixels.rect.height() + factor - 1) / factor, 3, kMaskedGrey);
   for (int y = 0; y < picture.height(); ++y)
     for (int x = 0; x < picture.width(); ++x) {
       const PixelRect square =

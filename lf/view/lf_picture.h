@@ -19,10 +19,11 @@ namespace lf {
 std::array<uint8_t, 3> DisplayColour(const RadianceEncoding& encoding, const Vec3& value);
 
 // Returns the LF image as sRGB, [height][width][3], in colours of DisplayColour(). If its longer
-// side exceeds max_side_px, it is reduced: each pixel of the picture is the mean of the unmasked
-// pixels of a square. A pixel is grey if all pixels of its square are masked.
+// side exceeds max_side_px, it is reduced, and loaded reduced if the store can do so
+// (LfImageStore::LoadReduced()): each pixel of the picture is then about the mean of a square.
+// Masked pixels are left out of it. A pixel is grey if all pixels of its square are masked.
 //   store  must be opened with Mosaics::kToRgb
-// Errors: those of LoadWithoutThrowing().
+// Errors: those of LoadReducedWithoutThrowing().
 Result<Image<uint8_t>> LfPicture(const LightField& light_field, const LfImageStore& store,
                                  LfImageId id, int max_side_px);
 
