@@ -26,6 +26,8 @@ from range_server import RangeServer
 CHOICES = ("--mode", "collect", "--estimator", "bilinear", "--lens-weights", "area")
 LENS = 8  # diameter of the lens, in distances of LF cameras
 CALLS = {"the report of `lfimport`, without checks": ("lfimport", "{field}", "--check", "none"),
+         "`lfrenderer --frames 1 --reduce 8 --max-images 16`":
+             ("lfrenderer", "{field}", "{path}", "-o", "{out}", "--frames", 1, "--reduce", 8, "--max-images", 16, *CHOICES),
          **{f"`lfrenderer --frames 1 --reduce {n}`": ("lfrenderer", "{field}", "{path}", "-o", "{out}", "--frames", 1,
                                                       "--reduce", n, *CHOICES) for n in (8, 4, 2)},
          "`lfrenderer --frames 1`": ("lfrenderer", "{field}", "{path}", "-o", "{out}", "--frames", 1),
