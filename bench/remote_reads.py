@@ -27,7 +27,8 @@ CHOICES = ("--mode", "collect", "--estimator", "bilinear", "--lens-weights", "ar
 LENS = 8  # diameter of the lens, in distances of LF cameras
 CALLS = {"the report of `lfimport`, without checks": ("lfimport", "{field}", "--check", "none"),
          "`lfrenderer --frames 1 --reduce 8 --max-images 16`":
-             ("lfrenderer", "{field}", "{path}", "-o", "{out}", "--frames", 1, "--reduce", 8, "--max-images", 16, *CHOICES),
+             ("lfrenderer", "{field}", "{path}", "-o", "{out}", "--frames", 1, "--reduce", 8, "--max-images", 16,
+              *CHOICES),
          **{f"`lfrenderer --frames 1 --reduce {n}`": ("lfrenderer", "{field}", "{path}", "-o", "{out}", "--frames", 1,
                                                       "--reduce", n, *CHOICES) for n in (8, 4, 2)},
          "`lfrenderer --frames 1`": ("lfrenderer", "{field}", "{path}", "-o", "{out}", "--frames", 1),

@@ -151,7 +151,8 @@ def row_of(kind, arguments, folder):
     errors = []
     reader = threading.Thread(target=lambda: errors.append(process.stderr.read()))
     reader.start()
-    status, usage, _, _ = watch(process.pid, 0.02, "-")
+    watch(process.pid, 0.02, "-")
+    _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
     reader.join()
     return {"kind": kind, "exit": process.returncode, "seconds": time.monotonic() - begin,
