@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "lf/camera/hood.h"
 #include "lf/core/check.h"
@@ -22,6 +23,7 @@ namespace {
 // to the next, as a share of the distance between LF cameras, unless the limits below make the grid
 // coarser.
 constexpr double kStepOfDistance = 1.0 / 3;
+constexpr int kLeastPartNodes = 17;    // columns or rows of nodes for a part of the lens
 constexpr int kMostNodes = 48;         // largest number of columns or rows of nodes
 static_assert(kMostNodes <= 256);      // nodes_across_ stores them as bytes
 constexpr int kLeastNodeStep_px = 32;  // elements from node to node; finer costs more than the rays
@@ -140,22 +142,11 @@ struct PartialLens {
     const std::vector<ApertureEdge> edges = HoodOnLens(frame, focus_world);
     for (const ApertureEdge& edge : edges) opening.Clip(edge.normal, edge.distance_w);
     constexpr int kSamples = 256;
-    for (const Vec2& place : SampleLens(frame.aperture, frame.aperture.radius_w > 0 ? kSamples : 1))
-      if (std::all_of(edges.begin(), edges.end(), [&](const ApertureEdge& edge) {
-            return edge.normal.dot(place) <= edge.distance_w;
-          }))
-        AddPlace(frame, place);
+    places = OpenPlaces(frame, focus_world, kSamples);
     measure = [&frame](const ConvexPolygon& part) {
       return frame.transmission ? TransmittedLight(*frame.transmission, frame.aperture, part)
                                 : part.Area();
     };
-  }
-
-  void AddPlace(const RenderCamera& frame, const Vec2& place) {
-    const double light = frame.transmission && frame.aperture.radius_w > 0
-                             ? LightThrough(*frame.transmission, frame.aperture, place)
-                             : 1;
-    if (light > 0) places.push_back({place, light});
   }
 
   ConvexPolygon opening;
@@ -192,6 +183,23 @@ double CameraDistance(const RenderCamera& frame, std::span<const Vec3> centres_w
       FocusPointOfElement(frame, 0.5 * plate.width_px, 0.5 * plate.height_px);
   if (!middle) return 0;
   return DistanceAround(PointsAt(frame, centres_world, *middle), frame.aperture.radius_w);
+}
+
+std::vector<LensPlace> OpenPlaces(const RenderCamera& frame, const Vec3& focus_world, int count) {
+  const std::vector<ApertureEdge> edges = HoodOnLens(frame, focus_world);
+  const bool is_pinhole = !(frame.aperture.radius_w > 0);
+  std::vector<LensPlace> places;
+  for (const Vec2& place : SampleLens(frame.aperture, is_pinhole ? 1 : count)) {
+    if (std::any_of(edges.begin(), edges.end(), [&](const ApertureEdge& edge) {
+          return edge.normal.dot(place) > edge.distance_w;
+        }))
+      continue;
+    const double light = frame.transmission && !is_pinhole
+                             ? LightThrough(*frame.transmission, frame.aperture, place)
+                             : 1;
+    if (light > 0) places.push_back({place, light});
+  }
+  return places;
 }
 
 std::vector<Vec3> DistinctPlaces(std::span<const Vec3> centres_world) {
@@ -233,16 +241,109 @@ FrameWeights::FrameWeights(const RenderCamera& frame, std::span<const Vec3> cent
   SetPlaces();
 }
 
+FrameWeights::FrameWeights(const RenderCamera& frame, std::span<const Vec3> centres_world,
+                           const PartOfLens& part_of, ThreadPool& pool)
+    : hat_share_(1),
+      radius_w_(frame.aperture.radius_w),
+      width_px_(frame.pinhole.intrinsics.width_px),
+      height_px_(frame.pinhole.intrinsics.height_px),
+      nodes_begin_(centres_world.size(), kNone) {
+  // The part also changes at the borders of LF images, wherever they are on the plate.
+  SetGrid(frame, centres_world, CameraDistance(frame, centres_world), 0, kLeastPartNodes);
+  std::vector<Node> nodes(static_cast<size_t>(columns_) * rows_);
+  parts_.assign(nodes.size(), 0);
+  pool.ForEach(nodes.size(),
+               [&](size_t n) { nodes[n] = MakeNodeOfPart(frame, centres_world, part_of, n); });
+  SetWeights(nodes);
+  SetPlaces();
+}
+
+FrameWeights::Node FrameWeights::MakeNodeOfPart(const RenderCamera& frame,
+                                                std::span<const Vec3> centres_world,
+                                                const PartOfLens& part_of, size_t node) {
+  const double x = NodePosition(static_cast<int>(node) % columns_, columns_, width_px_);
+  const double y = NodePosition(static_cast<int>(node) / columns_, rows_, height_px_);
+  Node shares_of_node;
+  const std::optional<Vec3> focus = FocusPointOfElement(frame, x, y);
+  if (!focus) return shares_of_node;
+  const LensPart part = part_of(x, y, *focus);
+  double sum = 0;
+  for (const LensPlace& place : part.places) sum += place.weight;
+  if (!(sum > 0)) return shares_of_node;
+  parts_[node] = static_cast<float>(std::min(sum, 1.0));
+  const LensPoints all = PointsAt(frame, centres_world, *focus);
+  LensPoints seen;
+  for (size_t k = 0; k < all.points.size(); ++k) {
+    if (!part.sees[all.cameras[k]]) continue;
+    seen.points.push_back(all.points[k]);
+    seen.cameras.push_back(all.cameras[k]);
+  }
+  const std::vector<double> shares = HatShares(seen.points, part.places);
+  for (size_t k = 0; k < shares.size(); ++k)
+    if (shares[k] > kLeastShare)
+      shares_of_node.push_back({seen.cameras[k], sum * shares[k], seen.points[k].norm()});
+  return shares_of_node;
+}
+
+double FrameWeights::PartAt(int x, int y) const {
+  const auto between = [](int element, int count, int size_px) {
+    const double place = count == 1 ? 0 : (element + 0.5) * (count - 1) / size_px;
+    const int node = std::min(static_cast<int>(place), std::max(0, count - 2));
+    return std::pair(node, place - node);
+  };
+  const auto [column, across] = between(x, columns_, width_px_);
+  const auto [row, down] = between(y, rows_, height_px_);
+  const auto at = [&, c = column, r = row](int right, int below) -> double {
+    return parts_[static_cast<size_t>(std::min(r + below, rows_ - 1)) * columns_ +
+                  std::min(c + right, columns_ - 1)];
+  };
+  const double upper = at(0, 0) + across * (at(1, 0) - at(0, 0));
+  const double lower = at(0, 1) + across * (at(1, 1) - at(0, 1));
+  return upper + down * (lower - upper);
+}
+
+bool FrameWeights::HasPart() const {
+  return std::any_of(parts_.begin(), parts_.end(), [](float part) { return part > 0; });
+}
+
+PixelRect FrameWeights::ElementsOf(size_t camera) const {
+  PixelRect bounds;
+  const std::span<const uint16_t> weights = NodesOf(camera);
+  // A block takes the weight of its middle for all of its elements.
+  const auto reach = [](int node, int count, int size_px) {
+    if (count == 1) return std::pair(0, size_px);
+    const double step = static_cast<double>(size_px) / (count - 1);
+    return std::pair(std::max(0, static_cast<int>((node - 1) * step) - kWeightBlock),
+                     std::min(size_px, static_cast<int>((node + 1) * step) + 1 + kWeightBlock));
+  };
+  for (size_t n = 0; n < weights.size(); ++n) {
+    if (weights[n] == 0) continue;
+    const auto [left, right] = reach(static_cast<int>(n) % columns_, columns_, width_px_);
+    const auto [top, bottom] = reach(static_cast<int>(n) / columns_, rows_, height_px_);
+    bounds = Bounds(bounds, {left, top, right, bottom});
+  }
+  return bounds;
+}
+
 void FrameWeights::SetGrid(const RenderCamera& frame, std::span<const Vec3> centres_world,
-                           double distance_w, size_t in_opening_count) {
-  if (distance_w == 0) return;
+                           double distance_w, size_t in_opening_count, int least_nodes) {
+  const auto at_least = [least_nodes](int count, int size_px) {
+    return std::max(count, std::clamp(size_px / kWeightBlock, 1, least_nodes));
+  };
+  columns_ = at_least(1, width_px_);
+  rows_ = at_least(1, height_px_);
   const Movement movement = MovementOf(frame, centres_world);
+  const auto set_step = [&] {
+    if (columns_ > 1) step_w_ += movement.across / (columns_ - 1);
+    if (rows_ > 1) step_w_ += movement.down / (rows_ - 1);
+  };
+  if (distance_w == 0) return set_step();
   // Weights have a sharp edge where the hood cuts the lens, and at edges of the transmission. They
   // move from node to node.
   const bool is_partial = frame.hood.exists() || frame.transmission;
   const int step_px = is_partial ? kWeightBlock : kLeastNodeStep_px;
-  columns_ = NodeCount(movement.across, distance_w, width_px_, step_px);
-  rows_ = NodeCount(movement.down, distance_w, height_px_, step_px);
+  columns_ = at_least(NodeCount(movement.across, distance_w, width_px_, step_px), width_px_);
+  rows_ = at_least(NodeCount(movement.down, distance_w, height_px_, step_px), height_px_);
   const size_t share_count = static_cast<size_t>(columns_) * rows_ * centres_world.size();
   if (share_count > kMostShares && hat_share_ == 0 && in_opening_count >= kManyInOpening &&
       !HasHorizon(frame)) {
@@ -251,8 +352,7 @@ void FrameWeights::SetGrid(const RenderCamera& frame, std::span<const Vec3> cent
     keeps_opening_ = !is_partial;
     CoarsenTo((keeps_opening_ ? kWholeCellShares : kMostShares) / centres_world.size());
   }
-  if (columns_ > 1) step_w_ += movement.across / (columns_ - 1);
-  if (rows_ > 1) step_w_ += movement.down / (rows_ - 1);
+  set_step();
 }
 
 void FrameWeights::CoarsenTo(size_t node_count) {
@@ -314,6 +414,7 @@ void FrameWeights::SetWeights(const std::vector<Node>& nodes) {
   const double most = std::min(*std::max_element(shares.begin(), shares.end()),
                                kMostSmallShares * ShareOfFirstTenth(shares));
   const double scale = kUnit * std::min(kMaxWeight / most, kMostTogether / together);
+  weights_per_share_ = scale / kUnit;
   int64_t sum = 0;
   size_t node_count = 0;  // number of nodes with a share
   for (size_t n = 0; n < nodes.size(); ++n) {
@@ -341,6 +442,7 @@ void FrameWeights::Reduce(double factor) {
   LF_CHECK(factor >= 0 && factor <= 1);
   for (uint16_t& weight : weights_) weight = static_cast<uint16_t>(std::lround(factor * weight));
   sum_of_weights_ *= factor;
+  weights_per_share_ *= factor;
 }
 
 std::optional<uint8_t> FrameWeights::ConstantOf(size_t camera) const {

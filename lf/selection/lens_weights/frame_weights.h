@@ -14,6 +14,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -24,6 +25,7 @@
 #include "lf/core/geometry.h"
 #include "lf/core/parallel.h"
 #include "lf/selection/lens_weights/covered_region.h"
+#include "lf/selection/lens_weights/lens_cells.h"
 #include "lf/selection/lens_weights/lens_coverage.h"
 #include "lf/selection/lens_weights/lens_weights.h"
 
@@ -41,6 +43,12 @@ inline constexpr double kHatsUpTo = 1;
 inline constexpr double kCellsFrom = 1.75;
 double AutoHatShare(double diameter_w, double camera_distance_w);
 
+// A part of the opening, as it is seen from one element.
+struct LensPart {
+  std::vector<LensPlace> places;  // the sum of their weights is the part's share of the lens: <= 1
+  std::vector<bool> sees;         // [camera]: false if the LF camera does not see the element
+};
+
 class FrameWeights {
  public:
   //   centres_world  positions of the LF cameras whose LF images may contribute
@@ -49,6 +57,24 @@ class FrameWeights {
   //                  position count as one
   FrameWeights(const RenderCamera& frame, std::span<const Vec3> centres_world, LensWeights kind,
                ThreadPool& pool, bool are_brackets = false);
+
+  // Makes the weights of a part of the opening, which differs from element to element: the mean
+  // natural-neighbour weights (HatShares()) of its places, times the sum of their weights.
+  //   part_of  returns the part as it is seen from the position (x, y) on the plate, which has the
+  //            focus point `focus_world`. Called by several threads at the same time
+  using PartOfLens = std::function<LensPart(double x_px, double y_px, const Vec3& focus_world)>;
+  FrameWeights(const RenderCamera& frame, std::span<const Vec3> centres_world,
+               const PartOfLens& part_of, ThreadPool& pool);
+
+  // Returns the share of the lens that the part has in an element, 0 to 1. Only for the weights of
+  // a part.
+  double PartAt(int x, int y) const;
+  // Returns the number by which shares were multiplied to make them weights; 0 if there are none.
+  double WeightsPerShare() const { return weights_per_share_; }
+  // True if the part has a share in some element.
+  bool HasPart() const;
+  // Returns the bounds of the elements in which the LF camera may have a weight above 0.
+  PixelRect ElementsOf(size_t camera) const;
 
   // Returns the weight of an LF camera's rays that land on an element, from 0 (they add nothing) to
   // kMaxWeight. `camera` is an index in centres_world. All elements of a block of BlocksOf(camera)
@@ -138,12 +164,15 @@ class FrameWeights {
   };
 
   //   in_opening_count  number of LF cameras seen through the opening from the middle of the plate
+  //   least_nodes       least number of columns and rows, on a plate that is large enough
   void SetGrid(const RenderCamera& frame, std::span<const Vec3> centres_world, double distance_w,
-               size_t in_opening_count);
+               size_t in_opening_count, int least_nodes = 1);
   // Makes the grid coarser until it has at most this many nodes, or four.
   void CoarsenTo(size_t node_count);
   Node MakeNode(const RenderCamera& frame, std::span<const Vec3> centres_world, int column,
                 int row) const;
+  Node MakeNodeOfPart(const RenderCamera& frame, std::span<const Vec3> centres_world,
+                      const PartOfLens& part_of, size_t node);
   void SetWeights(const std::vector<Node>& nodes);
   void SetPlaces();
   // Returns the position of the middle of a block, across or down.
@@ -161,10 +190,12 @@ class FrameWeights {
   int columns_ = 1;
   int rows_ = 1;
   double sum_of_weights_ = 0;
+  double weights_per_share_ = 0;
   double farthest_w_ = 0;            // largest CameraShare::distance_w at any node
   double step_w_ = 0;                // largest movement of lens points from one node to the next
   std::vector<size_t> nodes_begin_;  // [camera]: index of its first weight in weights_, or kNone
   std::vector<uint16_t> weights_;    // for each camera that takes part: [row][column], in 1/256
+  std::vector<float> parts_;         // share of the part of the lens: [row][column]
   std::vector<Place> places_down_;   // [end_y] of a block: PlaceOfBlock()
   // PlaceOfBlock() across, [end_x % kWeightBlock][end_x / kWeightBlock]: the blocks of a row are
   // adjacent.
@@ -181,6 +212,12 @@ class FrameWeights {
 // are no points, or if the middle of the plate has no focus point.
 inline constexpr size_t kCamerasAround = 12;
 double CameraDistance(const RenderCamera& frame, std::span<const Vec3> centres_world);
+
+// Returns places spread evenly over the opening of the lens, for rays through a focus point: those
+// that the hood leaves open, of `count` places of the whole opening, with the light that the
+// transmission lets through (0 to 1) as their weights. A place without light is left out. A pinhole
+// has one place.
+std::vector<LensPlace> OpenPlaces(const RenderCamera& frame, const Vec3& focus_world, int count);
 
 // Returns each position once, sorted by x, then y, then z. It is used for brackets, which have
 // several LF images of one pose, so that the distance between poses does not depend on the number
