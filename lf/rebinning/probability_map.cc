@@ -71,7 +71,7 @@ SmoothingTaps MakeTaps(double sigma_px) {
 
 ProbabilityParameters MakeParameters(const ProbabilityOptions& options, bool is_mosaic) {
   LF_CHECK(options.alpha >= 0 && options.alpha <= kMostAlpha);
-  LF_CHECK(options.beta >= 0 && options.xi >= 0 && options.xi < 1);
+  LF_CHECK(options.beta >= 0 && options.xi >= 0 && options.xi <= 1);
   const double scale = is_mosaic ? 0.5 : 1;  // number of grey values per LF pixel along an axis
   ProbabilityParameters parameters;
   parameters.taps = MakeTaps(scale * options.sigma_px);

@@ -16,7 +16,7 @@ struct ProbabilityOptions {
   double sigma_px = 1;         // sigma of the Gaussian, at most kMostSigma_px; 0: no smoothing
   double alpha = 8;            // factor of |LoG|, if black is 0 and white is 1; at most kMostAlpha
   double beta = 0;             // threshold of |LoG|, if black is 0 and white is 1
-  double xi = 0.05;            // least p of pixels whose |LoG| reaches beta; in [0, 1)
+  double xi = 0.05;            // least p of pixels whose |LoG| reaches beta; in [0, 1]
   double second_sigma_px = 0;  // sigma of another Gaussian, which smooths p; 0: no smoothing
 };
 inline constexpr double kMostSigma_px = 8;

@@ -16,6 +16,8 @@ FORMATS = [
      '{"package", 0x4C465047 /* "LFPG" */, '),
     ("sensor plate", "plate.md", "the number {} behind `LFPLATE`", "lf/film/plate/plate_format.h", '{"LFPLATE\\n", '),
     ("rebinned rays", "rays.md", "the number {} behind `LFCELLS`", "lf/rebinning/ray_map_format.h", '{"LFCELLS\\n", '),
+    ("kept pixels", "kept_pixels.md", "the number {} behind `LFPIXEL`", "lf/rebinning/kept_pixels_format.h",
+     '{"LFPIXEL\\n", '),
     ("report of a render", "../checkpoints.md", '`"format": "lfreport {}"`', "lf/render/state/report.cc",
      '"lfreport '),
     ("job of `lfsubmit`", "../cluster.md", '`"format": "lfjob {}"`', "lf/distribute/cluster/job.cc", '"lfjob '),

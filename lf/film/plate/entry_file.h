@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Common part of the files of plates and of rebinned rays: these files begin with a head, the text
-// of their entries, and the checksum of both. Internal to film/plate and rebinning.
+// Common part of the files of plates, of rebinned rays and of kept pixels: these files begin with a
+// head, the text of their entries, and the checksum of both. Internal to film/plate and rebinning.
 #pragma once
 
 #include <bit>
@@ -29,7 +29,8 @@ struct Kind {
   std::string_view if_broken;
 };
 
-// The head of every file, of plates or of rebinned rays, begins with these fields.
+// The head of every file, whether of plates, rebinned rays or kept pixels, begins with these
+// fields.
 struct HeadBegin {
   char magic[8];
   uint32_t version;
