@@ -280,6 +280,8 @@ std::string NextOf(const Arguments& a, std::span<const lf::Package> packages) {
   const lf::PackageChoices& choices = packages[0].choices;
   if (choices.mode != lf::RenderMode::kCollect)
     options.insert(options.end(), {"--mode", NameOf(choices.mode)});
+  if (choices.interpolation == lf::RayInterpolation::kCells)
+    options.insert(options.end(), {"--interpolation", NameOf(choices.interpolation)});
   if (!choices.has_neighbours && choices.mode != lf::RenderMode::kRebin)
     options.insert(options.end(), {"--lens-weights", "none"});
   if (!choices.has_neighbours && packages[0].whole_virtual_count > 0)

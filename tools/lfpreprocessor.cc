@@ -27,6 +27,7 @@
 #include "lf/distribute/preprocess/preprocess.h"
 #include "lf/import/paths/open_path.h"
 #include "lf/import/paths/recording_times.h"
+#include "lf/render/settings/interpolation.h"
 #include "lf/render/settings/setting_table.h"
 
 namespace {
@@ -98,6 +99,12 @@ void AddRender(CLI::App& app, Arguments& a) {
       "Mode of the later render\n"
       "Give the value that lfrenderer --mode will have. It affects which LF images and pixels the "
       "packages contain, the forecast, and the pixels that lfcompressor --needed-pixels keeps.");
+  a.settings.AddTo(
+      picture, "interpolation",
+      "Interpolation of the later render\n"
+      "Give the value that lfrenderer --interpolation will have, or cells if the later render will "
+      "have an option that only cells use. It matters with --mode rebin and hybrid: the checks of "
+      "lenses and options, and the pixels that lfcompressor --needed-pixels keeps, depend on it.");
   a.settings.AddTo(
       picture, "lens_weights",
       "Lens weights of the later render\n"
@@ -210,7 +217,7 @@ std::string NextOf(const Arguments& a, const lf::PreprocessReport& report) {
                           const std::string& otherwise) {
     if (value != otherwise) options.insert(options.end(), {option, value});
   };
-  for (const char* key : {"mode", "lens_weights", "estimator"})
+  for (const char* key : {"mode", "interpolation", "lens_weights", "estimator"})
     repeat(lf::CommandLineOption({key}), a.settings.Word(key),
            lf::FindSetting(key)->get(lf::FilmSettings()));
   const Arguments usual;
@@ -261,7 +268,7 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   facts.seed = options.film.seed;
   facts.thread_count = pool.thread_count();
   facts.read_s = read_s;
-  facts.rebins = lf::Rebins(options.film.mode);
+  facts.rebins = lf::KeepsCells(options.film);
   facts.depths_from = depths_from;
   facts.depths_argument = "--depths";
   const lf::Result<void> end = lf::EndWithMissing(

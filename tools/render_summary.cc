@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tools/common/next_step.h"
@@ -52,9 +53,19 @@ void WarnOfEmptyElements(const RenderReport& report) {
         100 * worst->empty_element_count[1] / element_count, CauseOfEmptyElements(report, *worst));
 }
 
-// Reports how much of the pictures is interpolated, and from how many rebinned rays.
+// Reports how much of the pictures is interpolated, and from how many kept pixels or cells.
 void TellRebinning(const RenderReport& report) {
   if (!report.rebinning) return;
+  const bool are_pixels = std::find(report.inputs.begin(), report.inputs.end(),
+                                    std::pair<std::string, std::string>(
+                                        "interpolation", "pixels")) != report.inputs.end();
+  if (are_pixels && report.rebinning->looked_at_count == 0) {
+    LogInfo("no pixels are kept: the lenses of these frames have no gaps");
+    return;
+  }
+  const bool are_mixed =
+      std::any_of(report.frames.begin(), report.frames.end(),
+                  [](const FrameReport& frame) { return frame.interpolated_share.has_value(); });
   double least = 1, most = 0;
   for (const FrameReport& frame : report.frames) {
     least = std::min(least, frame.interpolated_share.value_or(0));
@@ -66,14 +77,15 @@ void TellRebinning(const RenderReport& report) {
           ? ""
           : fmt::format(" ({:.1f} ns each)",
                         1e9 * rebinning.cpu_s / static_cast<double>(rebinning.looked_at_count));
-  LogInfo("rebinned: {}cells of {}LF pixels{}; {:.1f} to {:.1f} % of a frame is interpolated",
-          ShortNumber(static_cast<double>(rebinning.cell_count)),
-          ShortNumber(static_cast<double>(rebinning.looked_at_count)), cost, 100 * least,
-          100 * most);
+  LogInfo("{}: {}{} of {}LF pixels{}{}", are_pixels ? "kept" : "rebinned",
+          ShortNumber(static_cast<double>(rebinning.cell_count)), are_pixels ? "pixels" : "cells",
+          ShortNumber(static_cast<double>(rebinning.looked_at_count)), cost,
+          are_mixed ? fmt::format("; {:.1f} to {:.1f} % of a frame is interpolated", 100 * least,
+                                  100 * most)
+                    : "");
   if (rebinning.kept != "all")
     LogInfo(
-        "rebinned: {}: the picture therefore depends on --max-rays and on which frames are "
-        "rendered together",
+        "{}: the picture therefore depends on --max-rays and on which frames are rendered together",
         rebinning.kept == "edges" ? "only rays at edges were kept"
                                   : "there was no room for all rays");
 }

@@ -68,8 +68,9 @@ Result<Frame> FrameRenderer::Develop(size_t index) {
   LF_CHECK(index < renderer.frame_count());
   const WorkSettings& work = renderer.setup().work();
   constexpr bool kWithEffective = true;
-  RenderedFrame rendered = renderer.Develop(index, renderer.Complete(index), kWithEffective,
-                                            [&] { return work.IsStopped(); });
+  LF_ASSIGN_OR_RETURN(const std::optional<Completion> completion, renderer.Complete(index));
+  RenderedFrame rendered =
+      renderer.Develop(index, completion, kWithEffective, [&] { return work.IsStopped(); });
   if (work.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
   Frame frame;
   frame.picture = std::move(rendered.picture);

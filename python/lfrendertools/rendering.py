@@ -66,8 +66,8 @@ class Renderer:
     guard : bool
         True: where a frame of a densified light field is in focus, it shows recorded LF images alone. False: it shows
         virtual LF images there, like anywhere else. Default True.
-    kept, max_rays, average_others, preview, ... : object
-        Settings of rebinned rays, for the modes "rebin" and "hybrid": those of the options of `lfrenderer` with these
+    interpolation, kept, max_rays, average_others, preview, ... : object
+        Settings of kept rays, for the modes "rebin" and "hybrid": those of the options of `lfrenderer` with these
         names (doc/rebinning.md), such as `sigma_st=0.7`. The arguments average_others and reparameterise are True or
         False; slab_position and slab_forward are three numbers.
     memory : str

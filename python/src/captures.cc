@@ -33,6 +33,7 @@
 #include "lf/import/paths/open_path.h"
 #include "lf/import/report/import_report.h"
 #include "lf/light_field/synthetic/synthetic_field.h"
+#include "lf/render/settings/interpolation.h"
 #include "lf/storage/load/measure_footprint.h"
 #include "lf/storage/packed/packed_store_file.h"
 
@@ -135,7 +136,7 @@ std::string Preprocess(const OpenedField& field, const std::string& name,
         facts.order = options.film.order;
         facts.seed = options.film.seed;
         facts.thread_count = pool.thread_count();
-        facts.rebins = Rebins(options.film.mode);
+        facts.rebins = KeepsCells(options.film);
         facts.depths_from = KnowDepths(light_field, path, pool, &options);
         const PreprocessReport report =
             Take(lf::Preprocess(light_field, path, options, pool, work.Progress()));

@@ -102,12 +102,12 @@ class Film {
     Check(f);
     return CallWithoutGil(
         [&] {
-          const std::optional<Completion> completion = renderer().Complete(f);
+          const std::optional<Completion> completion = Take(renderer().Complete(f));
           const auto is_interrupted = [&] { return signals_.stop.load(); };
           RenderedFrame rendered = renderer().Develop(f, completion, true, is_interrupted);
           PlateNotes notes = renderer().NotesOf(f);
           notes.version = Version();
-          const bool keeps_opacity = setup_->film().Collects() && renderer().plate(f).has_opacity();
+          const bool keeps_opacity = renderer().PictureOf(f).has_opacity();
           return MakeFrame(std::move(rendered.picture), std::move(notes), keeps_opacity);
         },
         &signals_);

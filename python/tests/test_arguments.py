@@ -247,8 +247,12 @@ def test_commands_of_programs_keep_their_options(tmp_path):
 
 def test_messages_of_the_library_name_arguments(field, path, tmp_path):
     for options, words in (
-            ({"mode": "rebin", "max_images": 3}, 'max_images= cannot be used with mode="rebin", in which all frames '
-             'share the rebinned rays of all LF images: leave it out, or use mode="collect"'),
+            ({"mode": "rebin", "interpolation": "cells", "max_images": 3}, 'max_images= cannot be used with '
+             'mode="rebin" and interpolation="cells", in which all frames share the cells of all LF images: '
+             'leave it out, or use interpolation="pixels" or mode="collect"'),
+            ({"mode": "rebin", "interpolation": "pixels", "average_others": True}, 'interpolation="pixels" cannot be '
+             'used with average_others=True, which changes cells alone: leave average_others= out, or use '
+             'interpolation="cells"'),
             ({"mode": "rebin", "smooth_below": 3}, 'mode="rebin" collects no rays, which "samples>=N" (stop_when=, '
              'require=) and smooth_below= would count: leave these options out, use "noise<=X", or use mode="hybrid"'),
             ({"mode": "rebin", "slab_forward": (0, 0, 0)}, "slab_forward=(0, 0, 0): expected a direction, with at "

@@ -77,7 +77,7 @@ def test_what_knows_planes_only_says_so(field, path, path_file, depths, tmp_path
     with pytest.raises(lf.UsageError, match="shutter: a camera has a focal surface"):
         lf.Path([camera, camera], fps=25, shutter=(180, 4))
     with pytest.raises(lf.UsageError, match="focal surface"):
-        lf.render(field, camera, mode="rebin")
+        lf.render(field, camera, mode="rebin", interpolation="cells")
     with pytest.raises(lf.UsageError, match=r"with_surface\(None\)"):
         lf.Path([camera], fps=25).save(tmp_path / "a.yaml")
     of_program = tmp_path / "path.yaml"

@@ -25,7 +25,8 @@ def value_for(key):
         return usual == "off", "off" if usual == "on" else "on"
     if kind == "choice":
         other = {"mode": "hybrid", "estimator": "nearest", "filter": "bicubic", "lens_weights": "hat",
-                 "lf_pixels": "points", "order": "area", "kept": "edges", "preview": "on", "back_end": "reference"}[key]
+                 "lf_pixels": "points", "order": "area", "interpolation": "cells", "kept": "edges", "preview": "on",
+                 "back_end": "reference"}[key]
         return other, other
     number = 5 if ROWS[key][3] > 1 or usual == "1" else 1
     return (number if kind == "whole" else float(number)), str(number)

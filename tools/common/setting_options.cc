@@ -43,7 +43,8 @@ std::vector<std::string> WordsOf(const FilmSettings& film,
 }
 
 bool IsOfPackages(const Setting& setting) {
-  constexpr std::string_view kOfLaterRender[] = {"mode", "lens_weights", "guard", "estimator"};
+  constexpr std::string_view kOfLaterRender[] = {"mode", "interpolation", "lens_weights", "guard",
+                                                 "estimator"};
   return setting.is_in_packages || std::find(std::begin(kOfLaterRender), std::end(kOfLaterRender),
                                              setting.key) != std::end(kOfLaterRender);
 }

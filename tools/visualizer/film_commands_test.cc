@@ -33,6 +33,8 @@ TEST(TakesDensify, RefusesWhatTheRendererRefuses) {
   EXPECT_TRUE(TakesDensify(field, film, false));
   EXPECT_FALSE(TakesDensify(field, film, true));
   film.mode = RenderMode::kRebin;
+  EXPECT_TRUE(TakesDensify(field, film, false));
+  film.rebin.interpolation = RayInterpolation::kCells;
   EXPECT_FALSE(TakesDensify(field, film, false));
   film = {};
   field.encoding.bayer = BayerPattern::kRggb;

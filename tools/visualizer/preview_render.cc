@@ -128,26 +128,27 @@ Result<std::string> PreviewRender::RenderFrame(const Wish& wish) {
     LF_ASSIGN_OR_RETURN(is_going_on, renderer->Step());
     const Clock::time_point begin = Clock::now();
     if (!is_going_on || begin < next_picture) continue;
-    Show(*renderer);
+    LF_RETURN_IF_ERROR(Show(*renderer));
     Say(wish, "rendering", "");
     next_picture = Clock::now() + std::max<Clock::duration>(kBetweenPictures,
                                                             kPictureTimes * (Clock::now() - begin));
   }
   if (interrupted_) return Error{ErrorKind::kInterrupted, "interrupted"};
   LF_RETURN_IF_ERROR(renderer->CheckNotAllBroken());
-  Show(*renderer);
+  LF_RETURN_IF_ERROR(Show(*renderer));
   if (renderer->skipped().empty()) return std::string();
   return fmt::format("{} of {} LF images were left out, missing or broken; the first: {}",
                      renderer->skipped().size(), renderer->images().size(),
                      renderer->skipped().front().reason);
 }
 
-void PreviewRender::Show(FilmRenderer& renderer) {
-  auto picture = std::make_shared<const GrowingPicture>(
-      PictureOf(renderer.Develop(0).picture, kPictureSide_px));
+Result<void> PreviewRender::Show(FilmRenderer& renderer) {
+  LF_ASSIGN_OR_RETURN(const RenderedFrame frame, renderer.Develop(0));
+  auto picture = std::make_shared<const GrowingPicture>(PictureOf(frame.picture, kPictureSide_px));
   const std::lock_guard lock(mutex_);
   picture_ = std::move(picture);
   ++picture_count_;
+  return {};
 }
 
 PageAnswer PreviewRender::Answer(std::string_view name) const {

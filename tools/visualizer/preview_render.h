@@ -54,7 +54,7 @@ class PreviewRender {
   void Run();
   void Render(const Wish& wish);
   Result<std::string> RenderFrame(const Wish& wish);
-  void Show(FilmRenderer& renderer);
+  Result<void> Show(FilmRenderer& renderer);
   void Say(const Wish& wish, const std::string& state, const std::string& message);
 
   PageScene& scene_;

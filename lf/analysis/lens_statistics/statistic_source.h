@@ -57,7 +57,9 @@ class StatisticSource final : public FrameSource {
   void Release(size_t f) override;
   bool IsReleased(size_t f) const override { return frames_[f].is_released; }
 
-  std::optional<Completion> Complete(size_t /*f*/) override { return std::nullopt; }
+  Result<std::optional<Completion>> Complete(size_t /*f*/) override {
+    return std::optional<Completion>();
+  }
   RenderedFrame Develop(size_t f, const std::optional<Completion>& completion, bool with_effective,
                         const std::function<bool()>& is_interrupted) const override;
   Result<void> Measure(size_t /*f*/, FrameReport* /*report*/) override { return {}; }

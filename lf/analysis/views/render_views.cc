@@ -173,7 +173,8 @@ class ViewMaker {
     for (size_t f = 0; f < renderer.frame_count(); ++f) {
       if (IsStopped()) return Interrupted();
       const size_t view = views[renderer.id(f).value - 1];
-      LF_RETURN_IF_ERROR(Give(view, WithoutFilled(renderer.Develop(f).picture)));
+      LF_ASSIGN_OR_RETURN(RenderedFrame frame, renderer.Develop(f));
+      LF_RETURN_IF_ERROR(Give(view, WithoutFilled(std::move(frame.picture))));
       renderer.Release(f);
     }
     return {};

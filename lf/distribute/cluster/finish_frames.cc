@@ -58,13 +58,13 @@ bool IsFinished(const ClusterJob& job, FrameId frame) {
 }
 
 // Returns true if the checkpoint of the package has rays of the frame: either a plate of the frame,
-// or rebinned rays, which all frames of the package share.
+// or kept pixels or rebinned rays, which all frames of the package share.
 bool HasRays(const ClusterJob& job, const JobPackage& package, FrameId frame) {
   const fs::path checkpoint = job.output_folder / "partial" / package.name;
   std::error_code ignored;
   if (fs::exists(checkpoint / fmt::format("frame_{:04}.plate", frame.value), ignored)) return true;
   for (const auto& entry : fs::directory_iterator(checkpoint, ignored))
-    if (entry.path().extension() == ".rays") return true;
+    if (entry.path().extension() == ".rays" || entry.path().extension() == ".pixels") return true;
   return false;
 }
 
@@ -87,9 +87,8 @@ Result<size_t> AskToFinish(const ClusterJob& job, const std::string& frames_text
     if (!HasRays(job, *package, frame))
       return UsageError(fmt::format(
           "{{finish}}: frame {} cannot be finished yet, because {} has not written a checkpoint "
-          "with "
-          "rays of this frame: try again when {}/partial/{} contains frame_{:04}.plate, or a file "
-          "of rebinned rays (rays_*.rays)",
+          "with rays of this frame: try again when {}/partial/{} contains frame_{:04}.plate, or a "
+          "file of kept rays (kept_*.pixels or rays_*.rays)",
           frame.value, package->name, job.output_folder.string(), package->name, frame.value));
   }
   if (unfinished_count == 0) return unfinished_count;

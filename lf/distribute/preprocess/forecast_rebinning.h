@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Forecasts the rebinned rays of the frames of a package, as a render plans and makes them.
+// Forecasts the cells or kept pixels of the frames of a package, as a render plans and makes them.
 // Internal to this folder.
 #pragma once
 
@@ -11,6 +11,7 @@
 #include "lf/core/ids.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
+#include "lf/light_field/model/radiance.h"
 #include "lf/render/collect/collect_batch.h"
 #include "lf/render/hybrid/rebin_cost.h"
 #include "lf/render/needs/frame_needs.h"
@@ -20,7 +21,13 @@
 
 namespace lf {
 
-// Returns the cost of the rebinned rays of one pass. Measures it with a few LF images. The options
+// Returns the memory of kept pixels (rebinning/kept_pixels.h): the place of each and its values.
+//   pixel_count  number of LF pixels that frames ask for
+//   max_pixels   RenderMemory::max_cells
+size_t BytesOfKeptPixels(const RadianceEncoding& encoding, const RayReading& reading,
+                         uint64_t pixel_count, size_t max_pixels);
+
+// Returns the cost of the cells of one pass. Measures it with a few LF images. The options
 // of rebinning are the defaults, because packages have none. Errors are those of
 // MeasureRebinning().
 //   surroundings  [frame number - 1], for all frames of the path

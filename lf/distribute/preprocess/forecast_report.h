@@ -15,7 +15,7 @@ struct ForecastFacts {
   std::string light_field;  // LIGHTFIELD as the user typed it
   std::string output;       // folder of the packages; empty: nothing is written (--plan)
   std::string next;         // line that advises the next command; empty: none
-  bool rebins = false;      // true for RenderMode::kRebin and kHybrid
+  bool rebins = false;      // KeepsCells() (render/settings/interpolation.h)
   ImageOrder order = ImageOrder::kSpread;
   uint64_t seed = 0;
   int thread_count = 1;

@@ -4,13 +4,15 @@
 #include <fmt/format.h>
 
 #include "lf/render/collect/frame_lens.h"
+#include "lf/render/settings/interpolation.h"
 
 namespace lf {
 
 FilmSettings LaterRender(FilmSettings film, const LightField& light_field) {
   film.reading.filter = FilterOf(film.reading.filter, light_field.encoding);
-  // Rebinned rays alone are not weighted.
-  if (film.mode == RenderMode::kRebin && film.lens_weights == LensWeights::kAuto)
+  if (film.Rebins()) film.rebin.interpolation = InterpolationOf(film);
+  // Cells alone are not weighted.
+  if (!HasLensWeights(film) && film.lens_weights == LensWeights::kAuto)
     film.lens_weights = LensWeights::kNone;
   return film;
 }
@@ -23,25 +25,24 @@ NeedsOptions NeedsOfLaterRender(const FilmSettings& film, const LightField& ligh
   needs.select.interrupted = interrupted;
   needs.lens_weights = film.lens_weights;
   needs.mode = film.mode;
+  needs.rebin.interpolation = film.rebin.interpolation;
   needs.max_image_count = film.max_image_count;
-  needs.guard = film.guard && film.mode == RenderMode::kCollect && HasVirtual(light_field);
+  needs.guard = film.guard && !KeepsCells(film) && HasVirtual(light_field);
   return needs;
 }
 
 Result<void> CheckLaterRender(const LightField& light_field, const CameraPath& path,
                               std::span<const FrameId> frames, const FilmSettings& film,
                               const NeedsOptions& needs) {
-  LF_RETURN_IF_ERROR(CheckOpacity(light_field.encoding, film.mode));
-  LF_RETURN_IF_ERROR(CheckLenses(path.cameras, film.mode));
-  LF_RETURN_IF_ERROR(CheckShutter(path.shutter.exists(), film.mode, needs.guard));
-  if (film.Rebins() && film.max_image_count)
-    return UsageError(
-        "{max_images} cannot be used with {mode rebin} or hybrid, in which all frames share the "
-        "rebinned rays of all LF images: leave it out, or use {mode collect}");
-  if (!film.Collects() && film.lens_weights != LensWeights::kNone)
+  LF_RETURN_IF_ERROR(CheckInterpolation(film));
+  LF_RETURN_IF_ERROR(CheckOpacity(light_field.encoding, film));
+  LF_RETURN_IF_ERROR(CheckLenses(path.cameras, film));
+  LF_RETURN_IF_ERROR(CheckShutter(path.shutter.exists(), film, needs.guard));
+  LF_RETURN_IF_ERROR(CheckMaxImages(film));
+  if (!HasLensWeights(film) && film.lens_weights != LensWeights::kNone)
     return UsageError(fmt::format(
-        "{{lens_weights {}}} cannot be used with {{mode rebin}}, which collects no rays to "
-        "be weighted: leave it out",
+        "{{lens_weights {}}} cannot be used with {{mode rebin}} and {{interpolation cells}}, which "
+        "collect no rays to be weighted: leave it out, or use {{interpolation pixels}}",
         NameOf(film.lens_weights)));
   if (film.lens_weights == LensWeights::kArea)
     for (const FrameId frame : frames)

@@ -14,7 +14,8 @@
 
 namespace lf {
 
-// Returns the settings, with the filter and the lens weights that the render will use for "auto".
+// Returns the settings, with the filter, the interpolation and the lens weights that the render
+// will use for "auto".
 FilmSettings LaterRender(FilmSettings film, const LightField& light_field);
 
 // Returns the options that decide what frames need, such that the packages can be rendered with any

@@ -21,6 +21,7 @@
 #include "lf/render/hybrid/render_memory.h"
 #include "lf/render/needs/film_order.h"
 #include "lf/render/needs/frame_needs.h"
+#include "lf/render/settings/interpolation.h"
 #include "lf/storage/load/measure_footprint.h"
 #include "lf/storage/load/open_store.h"
 
@@ -283,9 +284,10 @@ Result<void> Preprocessor::Measure() {
 Result<RenderMemory> Preprocessor::MemoryOf(const LightField& light_field,
                                             size_t frame_count) const {
   const Intrinsics& plate = path_.Camera(frames_.front()).pinhole.intrinsics;
-  return PlanRenderMemory(options_.memory_bytes, film_.mode, 0, light_field, film_.reading,
-                          plate.width_px, plate.height_px, frame_count, pool_.thread_count(), 0,
-                          needs_.guard, static_cast<size_t>(path_.shutter.samples), nullptr,
+  return PlanRenderMemory(options_.memory_bytes, film_.mode, film_.rebin.interpolation, 0,
+                          light_field, film_.reading, plate.width_px, plate.height_px, frame_count,
+                          pool_.thread_count(), 0, needs_.guard,
+                          static_cast<size_t>(path_.shutter.samples), nullptr,
                           ReferenceNeedOf(*store_, light_field, IsInGroups()));
 }
 
@@ -364,9 +366,13 @@ Package Preprocessor::PackageOf(const Section& section, const Gathering& gatheri
   Package package;
   package.whole = whole_;
   package.whole_virtual_count = report_.light_field_virtual_count;
-  package.choices = {
-      film_.order, film_.seed, film_.max_image_count, film_.max_angle_rad, needs_.HasNeighbours(),
-      film_.mode};
+  package.choices = {film_.order,
+                     film_.seed,
+                     film_.max_image_count,
+                     film_.max_angle_rad,
+                     needs_.HasNeighbours(),
+                     film_.mode,
+                     Rebins(film_.mode) ? film_.rebin.interpolation : RayInterpolation::kAuto};
   package.path = path_;
   package.surroundings = surroundings_;
   package.instant_distances_w = instant_distances_w_;
@@ -443,7 +449,7 @@ Result<void> Preprocessor::Forecast(const Package& package, PackageForecast* for
   forecast->pass_count = (frame_count + per_pass - 1) / per_pass;
   RebinCost cost;
   StageTimes cpu;
-  if (Rebins(film_.mode)) {
+  if (needs_.KeepsCells()) {
     // The passes have about equal numbers of frames, and the first stands for all.
     const auto pass = std::span<const FrameId>(forecast->frames).first(per_pass);
     LF_ASSIGN_OR_RETURN(cost, ForecastRebinning(*index_, *store_, path_, surroundings_, pass,
@@ -452,14 +458,21 @@ Result<void> Preprocessor::Forecast(const Package& package, PackageForecast* for
     const auto passes = static_cast<double>(frame_count) / static_cast<double>(per_pass);
     cpu = {passes * cost.begin_s, 0, 0, passes * cost.rebin_s, passes * cost.complete_s, 0};
   }
+  if (KeepsPixels(film_))
+    cost.map_bytes = BytesOfKeptPixels(
+        package.light_field.encoding, film_.reading,
+        Collects(film_.mode) ? std::min(rebinned_count, read.pixel_count) : read.pixel_count,
+        memory.max_cells);
   forecast->memory_bytes =
-      ExpectedBytes(memory, package.light_field, read, Collects(film_.mode),
+      ExpectedBytes(memory, package.light_field, read, !needs_.KeepsOnlyCells(),
                     film_.reading.Prefilters(), Rebins(film_.mode) ? &cost : nullptr);
   if (!report_.rate) return {};
   cpu.begin_s += begin_cpu_s_;
   cpu.load_s = report_.rate->load_s * static_cast<double>(read.count);
+  // Frames are collected from kept pixels as from LF images.
+  const uint64_t not_collected = needs_.KeepsCells() ? rebinned_count : 0;
   cpu.collect_s =
-      report_.rate->collect_s * static_cast<double>(forecast->ray_count - rebinned_count);
+      report_.rate->collect_s * static_cast<double>(forecast->ray_count - not_collected);
   cpu.finish_s = report_.rate->finish_s * static_cast<double>(frame_count);
   forecast->cpu = cpu;
   return {};

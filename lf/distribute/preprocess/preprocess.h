@@ -121,13 +121,14 @@ struct PreprocessReport {
 
 // Makes the packages. They appear under their final names at the same time, when all are complete
 // (package_folder.h). kUsage: packages exist already; a package would replace a file that is read;
-// the lens of a frame is a pinhole, but the weights are kArea; the mode is kRebin, but lens_weights
-// is not kNone; the mode rebins, but
-// max_image_count is set, or the LF images have opacity. kInput: no LF image contributes to any
-// frame; an LF image is missing and `strict` is set; a packed store lacks pixels. kOutput: the disk
-// fails; another process writes packages into the folder; one frame needs more than memory_bytes.
-// kInterrupted: *options.interrupted is true. After an error, the folder has the previous packages,
-// or none.
+// the lens of a frame is a pinhole, but the weights are kArea; settings that only cells use are
+// given for pixels; cells are kept (render/settings/interpolation.h), but max_image_count is set,
+// the LF images have opacity, the path has a shutter, or a lens has a hood, a transmission or a
+// focal surface; cells alone are kept, but lens_weights is not kNone. kInput: no LF image
+// contributes to any frame; an LF image is missing and `strict` is set; a packed store lacks
+// pixels. kOutput: the disk fails; another process writes packages into the folder; one frame needs
+// more than memory_bytes. kInterrupted: *options.interrupted is true. After an error, the folder
+// has the previous packages, or none.
 //   progress  called twice for each frame, for the forecast and for its package; `total` is twice
 //             the number of frames
 Result<PreprocessReport> Preprocess(const LightField& light_field, const CameraPath& path,

@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 
+#include "lf/distribute/preprocess/forecast_rebinning.h"
 #include "lf/render/collect/frame_lens.h"
 #include "lf/render/collect/test_noise_field.h"
 #include "lf/render/needs/frame_needs.h"
@@ -199,13 +200,59 @@ TEST_F(PreprocessTest, PackagesHaveWhatAShutterNeeds) {
         }
       }
     }
+  options_.film.rebin.interpolation = RayInterpolation::kCells;
   for (const RenderMode mode : {RenderMode::kRebin, RenderMode::kHybrid}) {
     options_.film.mode = mode;
+    options_.film.lens_weights = LensWeights::kAuto;
     options_.film.max_image_count.reset();
     const Result<PreprocessReport> report = Preprocess(field_, film_, options_, pool_, nullptr);
     ASSERT_FALSE(report);
     EXPECT_NE(report.error().message.find("shutter"), std::string::npos);
   }
+}
+
+// Kept pixels are collected at every instant of a shutter. The hybrid also fills the gaps of each.
+TEST_F(PreprocessTest, PackagesHaveWhatKeptPixelsOfAShutterNeed) {
+  film_.shutter = {180, 3};
+  for (RenderCamera& camera : film_.cameras) {
+    camera.aperture.radius_w *= 0.02;  // between LF cameras
+    for (int k = 0; k < 3; ++k) {
+      RenderCamera instant = camera;
+      instant.pinhole.cam_from_world.translation.x() -= 0.003 * (k - 1);
+      film_.instants.push_back(instant);
+    }
+  }
+  const ImageIndex whole(field_, RanksOf(options_.film.order, field_, options_.film.seed));
+  options_.film.lens_weights = LensWeights::kNone;
+  options_.film.rebin.interpolation = RayInterpolation::kPixels;
+  std::map<RenderMode, uint64_t> rays;
+  for (const RenderMode mode : {RenderMode::kCollect, RenderMode::kRebin, RenderMode::kHybrid}) {
+    options_.film.mode = mode;
+    options_.overwrite = true;
+    NeedsOptions needs;
+    needs.select.reach = PixelReach::kElement;
+    needs.lens_weights = LensWeights::kNone;
+    needs.mode = mode;
+    needs.rebin.interpolation = RayInterpolation::kPixels;
+    for (const PackageForecast& forecast : Run().packages) {
+      const Package package = Read(forecast);
+      const ImageIndex part(package.light_field, package.ranks);
+      for (const PackageFrame& frame : package.frames) {
+        const FrameNeeds wanted = NeedsOf(whole, film_, frame.id, needs, pool_);
+        const FrameNeeds found = NeedsOf(part, package.path, frame.id, needs, pool_, &package);
+        EXPECT_EQ(frame.ray_count, wanted.RayCount());
+        ASSERT_EQ(found.images.size(), wanted.images.size());
+        for (size_t i = 0; i < found.images.size(); ++i) {
+          EXPECT_EQ(package.images[found.images[i].id.value].id, wanted.images[i].id.value);
+          EXPECT_EQ(found.images[i].rect, wanted.images[i].rect);
+        }
+        EXPECT_TRUE(wanted.rebinned_count == 0 || mode == RenderMode::kHybrid);
+        rays[mode] += frame.ray_count;
+      }
+    }
+  }
+  EXPECT_EQ(rays[RenderMode::kRebin], rays[RenderMode::kCollect]);
+  EXPECT_GT(rays[RenderMode::kHybrid], rays[RenderMode::kCollect]);
 }
 
 // Guarded frames take more LF images, because recorded LF cameras are farther apart than all, and
@@ -248,29 +295,101 @@ TEST_F(PreprocessTest, PackagesHaveWhatTheGuardNeeds) {
 // lens.
 TEST_F(PreprocessTest, PackagesHaveWhatTheModeNeeds) {
   for (RenderCamera& camera : film_.cameras) camera.aperture.radius_w *= 0.2;
-  std::map<RenderMode, uint64_t> rays;
+  for (const RayInterpolation way : {RayInterpolation::kCells, RayInterpolation::kPixels}) {
+    std::map<RenderMode, uint64_t> rays;
+    for (const RenderMode mode : {RenderMode::kCollect, RenderMode::kRebin, RenderMode::kHybrid}) {
+      options_.film.mode = mode;
+      options_.film.rebin.interpolation = way;
+      options_.film.lens_weights = LensWeights::kNone;
+      options_.overwrite = true;
+      NeedsOptions needs;
+      needs.select.reach = PixelReach::kElement;
+      needs.lens_weights = LensWeights::kNone;
+      needs.mode = mode;
+      needs.rebin.interpolation = way;
+      for (const PackageForecast& forecast : Run().packages) {
+        const Package package = Read(forecast);
+        EXPECT_EQ(package.choices.mode, mode);
+        EXPECT_EQ(package.choices.interpolation, Rebins(mode) ? way : RayInterpolation::kAuto);
+        EXPECT_EQ(package.choices.has_neighbours, Rebins(mode));
+        ExpectPackageIsAsGoodAsTheWhole(package, needs);
+        rays[mode] += forecast.ray_count;
+      }
+    }
+    if (way == RayInterpolation::kCells) {
+      EXPECT_GT(rays[RenderMode::kRebin], rays[RenderMode::kCollect]);
+    } else {
+      EXPECT_EQ(rays[RenderMode::kRebin], rays[RenderMode::kCollect]);
+    }
+    EXPECT_GT(rays[RenderMode::kHybrid], rays[RenderMode::kCollect]);
+  }
+}
+
+// Kept pixels have the weights, limits and guard of collected ones.
+TEST_F(PreprocessTest, PackagesHaveWhatKeptPixelsNeed) {
+  for (uint32_t i = 0; i < field_.size(); ++i) field_.cameras[i].is_virtual = i % 3 != 0;
+  // The view is so narrow that frames need parts of LF images.
+  for (RenderCamera& camera : film_.cameras)
+    camera.pinhole.intrinsics.fx_px = camera.pinhole.intrinsics.fy_px = 300;
+  options_.film.lens_weights = LensWeights::kHat;
+  options_.film.max_image_count = 9;
+  std::map<RenderMode, std::vector<FrameNeeds>> found;
+  const ImageIndex whole(field_, RanksOf(options_.film.order, field_, options_.film.seed));
   for (const RenderMode mode : {RenderMode::kCollect, RenderMode::kRebin, RenderMode::kHybrid}) {
     options_.film.mode = mode;
-    options_.film.lens_weights = LensWeights::kNone;
     options_.overwrite = true;
     NeedsOptions needs;
     needs.select.reach = PixelReach::kElement;
-    needs.lens_weights = LensWeights::kNone;
+    needs.lens_weights = LensWeights::kHat;
+    needs.max_image_count = 9;
     needs.mode = mode;
-    for (const PackageForecast& forecast : Run().packages) {
-      const Package package = Read(forecast);
-      EXPECT_EQ(package.choices.mode, mode);
-      EXPECT_EQ(package.choices.has_neighbours, Rebins(mode));
-      ExpectPackageIsAsGoodAsTheWhole(package, needs);
-      rays[mode] += forecast.ray_count;
+    needs.rebin.interpolation = RayInterpolation::kPixels;
+    needs.guard = true;
+    for (const PackageForecast& forecast : Run().packages)
+      ExpectPackageIsAsGoodAsTheWhole(Read(forecast), needs);
+    for (const RenderCamera& camera : film_.cameras)
+      found[mode].push_back(NeedsOf(whole, camera, needs, pool_));
+  }
+  const int around = PixelsAround(RebinOptions(), true);
+  EXPECT_GT(around, 0);
+  const auto grown = [around](const PixelRect& rect) {
+    return Intersection(
+        {rect.x_begin - around, rect.y_begin - around, rect.x_end + around, rect.y_end + around},
+        {0, 0, 64, 48});
+  };
+  size_t grown_count = 0;
+  for (size_t f = 0; f < film_.cameras.size(); ++f) {
+    const std::vector<FrameNeeds::Image>& collected = found[RenderMode::kCollect][f].images;
+    const std::vector<FrameNeeds::Image>& kept = found[RenderMode::kRebin][f].images;
+    ASSERT_EQ(kept.size(), collected.size());
+    for (size_t i = 0; i < kept.size(); ++i) {
+      EXPECT_EQ(kept[i].id, collected[i].id);
+      EXPECT_EQ(kept[i].ray_count, collected[i].ray_count);
+      // Edges are found from the pixels around.
+      EXPECT_EQ(kept[i].rect, grown(collected[i].rect));
+      grown_count += kept[i].rect == collected[i].rect ? 0 : 1;
     }
   }
-  EXPECT_GT(rays[RenderMode::kRebin], rays[RenderMode::kCollect]);
-  EXPECT_GT(rays[RenderMode::kHybrid], rays[RenderMode::kCollect]);
+  EXPECT_GT(grown_count, 0u);
 }
 
-TEST_F(PreprocessTest, WhatRebinnedRaysCannotHaveIsRefused) {
+TEST(ForecastRebinning, KeptPixelsTakeTheirPlaceAndTheirValues) {
+  RadianceEncoding encoding;
+  EXPECT_EQ(BytesOfKeptPixels(encoding, Estimator::kBilinear, 1000, 5000), 10'000u);
+  EXPECT_EQ(BytesOfKeptPixels(encoding, Estimator::kBilinear, 9000, 5000), 50'000u);
+  encoding.bayer = BayerPattern::kRggb;
+  EXPECT_EQ(BytesOfKeptPixels(encoding, Estimator::kBilinear, 1000, 5000), 10'000u);
+  EXPECT_EQ(BytesOfKeptPixels(encoding, Estimator::kNearest, 1000, 5000), 6'000u);
+  encoding = {};
+  encoding.alpha = AlphaMeaning::kStraight;
+  encoding.keeps_opacity = true;
+  ASSERT_TRUE(encoding.HasOpacity());
+  EXPECT_EQ(BytesOfKeptPixels(encoding, Estimator::kBilinear, 1000, 5000), 12'000u);
+}
+
+TEST_F(PreprocessTest, WhatCellsCannotHaveIsRefused) {
   options_.film.mode = RenderMode::kRebin;
+  options_.film.rebin.interpolation = RayInterpolation::kCells;
   for (const bool has_weights : {true, false}) {
     // kAuto means none here.
     options_.film.lens_weights = has_weights ? LensWeights::kHat : LensWeights::kAuto;
@@ -280,7 +399,13 @@ TEST_F(PreprocessTest, WhatRebinnedRaysCannotHaveIsRefused) {
     EXPECT_EQ(report.error().kind, ErrorKind::kUsage);
     EXPECT_NE(report.error().message.find(has_weights ? "{lens_weights hat}" : "{max_images}"),
               std::string::npos);
+    EXPECT_NE(report.error().message.find("{interpolation pixels}"), std::string::npos);
   }
+  options_.film.rebin.interpolation = RayInterpolation::kPixels;
+  options_.film.rebin.query.lens_sets = 2;
+  const Result<PreprocessReport> report = Preprocess(field_, film_, options_, pool_, nullptr);
+  ASSERT_FALSE(report);
+  EXPECT_NE(report.error().message.find("{lens_sets 2}"), std::string::npos);
 }
 
 TEST_F(PreprocessTest, FramesAndSectionsAsAsked) {

@@ -281,9 +281,12 @@ void FrameCollector::State::Load(const Batch& batch, Loading* loading) {
                                          loading->filtered_by ? RowsLoaded(filter_rows) : nullptr);
   if (*loading->pixels) {
     LfPixels& pixels = **loading->pixels;
-    loading->depths = NearbyDepthsOf(std::exchange(pixels.depths, {}));
+    const bool is_guarded = !frames_.empty() && frames_.front().guard;
+    if (is_guarded) {
+      loading->depths = NearbyDepthsOf(pixels.depths);
+      if (!is_consumed) pixels.depths = {};  // a consumer may collect guarded frames later
+    }
     if (!loading->filtered_by) {
-      const bool is_guarded = !frames_.empty() && frames_.front().guard;
       loading->opacity = is_guarded ? TakeOpacityAndTrust(&pixels) : pixels.TakeOpacity();
       loading->rect = pixels.rect;
     }

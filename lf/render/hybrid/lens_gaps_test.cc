@@ -5,36 +5,14 @@
 
 #include <algorithm>
 
+#include "lf/render/hybrid/test_grid.h"
 #include "lf/selection/lens_weights/frame_weights.h"
 
 namespace lf {
 namespace {
 
-// Returns `rows` rows of 12 parallel LF cameras, 0.01 apart, in the plane z = 0, which is the lens
-// plane of Frame() by default.
-LightField Grid(int rows = 12) {
-  LightField field;
-  field.intrinsics = {{70, 70, 32, 24, 0, 64, 48}};
-  for (int y = 0; y < rows; ++y)
-    for (int x = 0; x < 12; ++x) {
-      LfCamera camera;
-      camera.cam_from_world =
-          *LookAlong({0.01 * (x - 5.5), 0.01 * (y - 0.5 * (rows - 1)), 0}, {0, 0, 1}, {0, -1, 0});
-      field.cameras.push_back(camera);
-      field.image_names.push_back("image");
-    }
-  return field;
-}
-
-RenderCamera Frame(double radius_w, double x = 0, double z = 0) {
-  RenderCamera frame;
-  frame.pinhole.intrinsics = {160, 160, 40, 30, 0, 80, 60};
-  frame.pinhole.cam_from_world = *LookAlong({x, 0, z}, {0, 0, 1}, {0, -1, 0});
-  frame.aperture = {radius_w, 0, 0};
-  frame.focus_distance_w = 1;
-  frame.focus_plane = FocusPlane(frame.pinhole, 1, {});
-  return frame;
-}
+using testing::Frame;
+using testing::Grid;
 
 LensGaps GapsOf(const LightField& field, const RenderCamera& frame, const RankRange& ranks = {}) {
   ThreadPool pool(2);

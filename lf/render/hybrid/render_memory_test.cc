@@ -20,9 +20,9 @@ LightField FieldOfThousand() {
 
 Result<RenderMemory> PlanOf(size_t memory_mib, RenderMode mode, size_t max_cells,
                             uint64_t reference_mib) {
-  return PlanRenderMemory(memory_mib * kMiB, mode, max_cells, FieldOfThousand(),
-                          Estimator::kNearest, 480, 320, 10, 2, 0, false, 1, nullptr,
-                          {reference_mib * kMiB, false});
+  return PlanRenderMemory(memory_mib * kMiB, mode, RayInterpolation::kCells, max_cells,
+                          FieldOfThousand(), Estimator::kNearest, 480, 320, 10, 2, 0, false, 1,
+                          nullptr, {reference_mib * kMiB, false});
 }
 
 // The memory that is named keeps all reference images beside the rebinned rays, and less does not.

@@ -12,6 +12,8 @@
 #include "lf/core/check.h"
 #include "lf/render/collect/around_lens.h"
 #include "lf/render/collect/frame_lens.h"
+#include "lf/render/hybrid/frame_pixels.h"
+#include "lf/render/hybrid/gap_lens.h"
 #include "lf/selection/ideal_cells.h"
 #include "lf/selection/overlap.h"
 
@@ -20,10 +22,94 @@ namespace {
 
 // Near() may use FrameLens::near() instead of ImagesNearLens(), because both have the same reach.
 static_assert(FrameLens::kReach_distances == kFarthestDistances);
+// The neighbours contain the LF cameras that complete gaps.
+static_assert(GapLens::kFarthestDistances == kFarthestDistances);
 
 std::optional<double> DistanceOf(const std::optional<FrameSampling>& sampling) {
   if (!sampling) return std::nullopt;
   return sampling->lf.camera_distance_w;
+}
+
+// Adds the pixels around those that frames ask for, from which the edges in LF images are found.
+void GrowByEdges(const ImageIndex& index, const NeedsOptions& options,
+                 std::vector<FrameNeeds::Image>* images) {
+  const int around_px = PixelsAround(options.rebin.rebin.probability, true);
+  for (FrameNeeds::Image& image : *images)
+    image.rect = GrownBy(image.rect, around_px, index.light_field().Camera(image.id).intrinsics);
+}
+
+// Merges `others` into `images`. Both lists are by ascending ranks.
+void Join(const ImageIndex& index, const std::vector<FrameNeeds::Image>& others,
+          std::vector<FrameNeeds::Image>* images) {
+  const auto rank = [&index](const FrameNeeds::Image& image) { return index.RankOf(image.id); };
+  std::vector<FrameNeeds::Image> joined;
+  auto next = others.begin();
+  for (const FrameNeeds::Image& image : *images) {
+    while (next != others.end() && rank(*next) < rank(image)) joined.push_back(*next++);
+    joined.push_back(image);
+    if (next == others.end() || next->id != image.id) continue;
+    joined.back().rect = Bounds(image.rect, next->rect);
+    joined.back().ray_count += next->ray_count;
+    ++next;
+  }
+  joined.insert(joined.end(), next, others.end());
+  *images = std::move(joined);
+}
+
+// Returns the LF images, and their pixels, that complete the gaps of a frame's lenses.
+std::vector<FrameNeeds::Image> ImagesOfGaps(const ImageIndex& index, std::span<const GapLens> gaps,
+                                            const RankRange& ranks, const NeedsOptions& options,
+                                            ThreadPool& pool) {
+  KeptFrame kept;
+  kept.ranks = ranks;
+  std::vector<TakingFrame> taking;
+  for (const GapLens& gap : gaps) {
+    if (!gap.exists()) continue;
+    kept.gaps.push_back(&gap);
+    taking.push_back({gap.camera(), ranks, [&gap](LfImageId id) { return gap.Takes(id); }});
+  }
+  std::vector<FrameNeeds::Image> images;
+  if (taking.empty()) return images;
+  for (const SelectedImage& image : SelectImages(index, taking, options.select, pool)) {
+    const PinholeCamera camera = index.light_field().Camera(image.id);
+    std::vector<IdealCell> cells;
+    if (camera.intrinsics.has_distortion()) cells = MakeIdealCells(camera.intrinsics);
+    const ImageOverlap overlap(camera, cells, options.select.reach);
+    FrameNeeds::Image needed{image.id, {}, 0};
+    for (const PixelRect& rect : AskedRects(kept, image.id, overlap, image.rank)) {
+      needed.rect = Bounds(needed.rect, rect);
+      needed.ray_count += static_cast<uint64_t>(rect.pixel_count());
+    }
+    if (needed.rect.empty()) continue;
+    images.push_back(needed);
+  }
+  GrowByEdges(index, options, &images);
+  return images;
+}
+
+// Adds what completes the gaps of a frame's lenses, one for each of its instants.
+//   distances_w  distances between LF cameras around the lenses; empty: measured in `index`
+void AddGaps(const ImageIndex& index, std::span<const RenderCamera> instants,
+             std::span<const FrameLens> lenses, const RankRange& ranks, const NeedsOptions& options,
+             std::span<const double> distances_w, ThreadPool& pool, FrameNeeds* needs) {
+  const auto images_of = [&](std::span<const FrameLens> collected) {
+    std::vector<GapLens> gaps;
+    for (size_t i = 0; i < instants.size(); ++i)
+      gaps.emplace_back(index, instants[i], collected[i], ranks, options.select, pool,
+                        i < distances_w.size() ? std::optional(distances_w[i]) : std::nullopt);
+    return ImagesOfGaps(index, gaps, ranks, options, pool);
+  };
+  const std::vector<FrameNeeds::Image> images = images_of(lenses);
+  for (const FrameNeeds::Image& image : images) needs->rebinned_count += image.ray_count;
+  Join(index, images, &needs->images);
+  if (options.lens_weights != LensWeights::kAuto) return;
+  // A rule that counts rays leaves out lens weights, and the lens then has other gaps.
+  std::vector<FrameLens> plain;
+  for (const RenderCamera& instant : instants)
+    plain.emplace_back(index, instant, LensWeights::kNone, options.select, pool);
+  std::vector<FrameNeeds::Image> others = images_of(plain);
+  for (FrameNeeds::Image& image : others) image.ray_count = 0;
+  Join(index, others, &needs->images);
 }
 
 class NeedsFinder {
@@ -41,8 +127,8 @@ class NeedsFinder {
     if (&index.recorded() != &index || (sampling && sampling->recorded_distance_w))
       recorded_lens_.emplace(index.recorded(), frame, options.lens_weights, options.select, pool,
                              sampling ? sampling->recorded_distance_w : std::nullopt);
-    LF_CHECK(options.mode == RenderMode::kCollect || !options.max_image_count);
-    LF_CHECK(options.mode != RenderMode::kRebin || options.lens_weights == LensWeights::kNone);
+    LF_CHECK(!options.KeepsCells() || !options.max_image_count);
+    LF_CHECK(!options.KeepsOnlyCells() || options.lens_weights == LensWeights::kNone);
     needs_.sampling = sampling;
   }
 
@@ -54,28 +140,33 @@ class NeedsFinder {
   }
 
   FrameNeeds Find() {
-    if (Collects(options_.mode)) AddCollected();
-    if (Rebins(options_.mode)) AddRebinned();
+    if (!options_.KeepsOnlyCells()) AddCollected();
+    if (options_.KeepsCells()) AddRebinned();
+    if (options_.KeepsPixels() && Collects(options_.mode)) {
+      AddGaps(index_, {&frame_, 1}, {&lens_, 1}, ranks_, options_,
+              distance_w_ ? std::span(&*distance_w_, 1) : std::span<const double>(), pool_,
+              &needs_);
+    } else if (options_.KeepsPixels()) {
+      GrowByEdges(index_, options_, &needs_.images);
+    }
     if (options_.HasNeighbours()) FindNeighbours();
     return std::move(needs_);
   }
 
  private:
   void AddCollected() {
-    const bool is_guarded = options_.guard && recorded_lens_;
-    const FrameLens& counted = is_guarded ? *recorded_lens_ : lens_;
+    const FrameLens& counted = is_guarded() ? *recorded_lens_ : lens_;
     std::vector<TakingFrame> frames = {Taking(counted)};
     if (options_.max_image_count)
-      frames[0].ranks =
-          RanksOfFirst(*options_.max_image_count, is_guarded ? index_.recorded() : index_,
-                       frames[0], options_.select);
-    if (is_guarded) {
-      frames.push_back(Taking(lens_));
-      frames[1].ranks = frames[0].ranks;
-    }
+      ranks_ = RanksOfFirst(*options_.max_image_count, is_guarded() ? index_.recorded() : index_,
+                            frames[0], options_.select);
+    if (is_guarded()) frames.push_back(Taking(lens_));
+    for (TakingFrame& frame : frames) frame.ranks = ranks_;
     for (const SelectedImage& image : SelectImages(index_, frames, options_.select, pool_))
       needs_.images.push_back({image.id, image.rect, image.ray_count});
   }
+
+  bool is_guarded() const { return options_.guard && recorded_lens_; }
 
   TakingFrame Taking(const FrameLens& lens) const {
     TakingFrame frame = {lens.camera()};
@@ -102,6 +193,10 @@ class NeedsFinder {
     Join(rebinned);
   }
 
+  void Join(const std::vector<FrameNeeds::Image>& others) {
+    lf::Join(index_, others, &needs_.images);
+  }
+
   PixelRect RebinnedRect(const AskedPixels& asked, const SelectedImage& image) const {
     const LightField& light_field = index_.light_field();
     const PinholeCamera camera = light_field.Camera(image.id);
@@ -111,23 +206,6 @@ class NeedsFinder {
     const PixelRect rect =
         asked.RectOf(light_field.cameras[image.id.value], overlap, image.rank, options_.select);
     return GrownBy(rect, PixelsAround(options_.rebin.rebin, true), camera.intrinsics);
-  }
-
-  // Merges `rebinned` into needs_.images. Both lists are by ascending ranks.
-  void Join(const std::vector<FrameNeeds::Image>& rebinned) {
-    const auto rank = [this](const FrameNeeds::Image& image) { return index_.RankOf(image.id); };
-    std::vector<FrameNeeds::Image> joined;
-    auto next = rebinned.begin();
-    for (const FrameNeeds::Image& image : needs_.images) {
-      while (next != rebinned.end() && rank(*next) < rank(image)) joined.push_back(*next++);
-      joined.push_back(image);
-      if (next == rebinned.end() || next->id != image.id) continue;
-      joined.back().rect = Bounds(image.rect, next->rect);
-      joined.back().ray_count += next->ray_count;
-      ++next;
-    }
-    joined.insert(joined.end(), next, rebinned.end());
-    needs_.images = std::move(joined);
   }
 
   // Finds the LF cameras that are needed for lens weights, gaps of the lens, and rebinned rays with
@@ -189,6 +267,7 @@ class NeedsFinder {
   const std::optional<double> distance_w_;
   const FrameLens& lens_;
   std::optional<FrameLens> recorded_lens_;  // set if the whole light field has virtual LF images
+  RankRange ranks_;                         // ranks of the LF images that the frame takes
   FrameNeeds needs_;
 };
 
@@ -230,7 +309,7 @@ FrameNeeds NeedsOf(const ImageIndex& index, const CameraPath& path, FrameId fram
   const std::optional<FrameSampling> sampling =
       package != nullptr ? SamplingOf(*package, frame) : std::nullopt;
   if (!path.shutter.exists()) return NeedsOf(index, path.Camera(frame), options, pool, sampling);
-  LF_CHECK(options.mode == RenderMode::kCollect && !options.guard);
+  LF_CHECK(!options.KeepsCells() && !options.guard);
   const std::span<const RenderCamera> instants = path.Instants(frame);
   const std::span<const double> distances_w =
       package != nullptr ? package->InstantDistances(frame) : std::span<const double>();
@@ -242,13 +321,18 @@ FrameNeeds NeedsOf(const ImageIndex& index, const CameraPath& path, FrameId fram
     if (options.lens_weights != LensWeights::kNone)
       taking.back().takes = [&lens](LfImageId id) { return lens.Takes(id); };
   }
-  if (options.max_image_count) {
-    const RankRange ranks = RanksOfFirst(*options.max_image_count, index, taking, options.select);
-    for (TakingFrame& instant : taking) instant.ranks = ranks;
-  }
+  RankRange ranks;
+  if (options.max_image_count)
+    ranks = RanksOfFirst(*options.max_image_count, index, taking, options.select);
+  for (TakingFrame& instant : taking) instant.ranks = ranks;
   FrameNeeds needs;
   for (const SelectedImage& image : SelectImages(index, taking, options.select, pool))
     needs.images.push_back({image.id, image.rect, image.ray_count});
+  if (options.KeepsPixels() && Collects(options.mode)) {
+    AddGaps(index, instants, lenses, ranks, options, distances_w, pool, &needs);
+  } else if (options.KeepsPixels()) {
+    GrowByEdges(index, options, &needs.images);
+  }
   if (!options.HasNeighbours()) return needs;
 
   needs.sampling =

@@ -31,17 +31,27 @@ namespace lf {
 // The options of a render that determine what its frames need.
 struct NeedsOptions {
   SelectOptions select;  // whole_images must be false
-  // Must be kNone if the mode is kRebin, because it collects no rays that could be weighted.
+  // Must be kNone if KeepsOnlyCells(), because no rays are collected that could be weighted.
   LensWeights lens_weights = LensWeights::kAuto;
-  // Must be above 0. Must be unset unless the mode is kCollect.
+  // Must be above 0. Must be unset if KeepsCells().
   std::optional<size_t> max_image_count;
   RenderMode mode = RenderMode::kCollect;
-  // Only its members query, previews and rebin are used; none if the mode is kCollect.
+  // Only its members interpolation, query, previews and rebin are used; none if the mode is
+  // kCollect. The interpolation must not be kAuto if the mode rebins (InterpolationOf()).
   RebinSettings rebin;
 
   // True if the plates of frames are guarded (FilmSetup::is_guarded()): the light field must be
-  // densified, and the mode kCollect.
+  // densified, and KeepsCells() false.
   bool guard = false;
+
+  bool KeepsCells() const {
+    return Rebins(mode) && rebin.interpolation == RayInterpolation::kCells;
+  }
+  bool KeepsPixels() const { return Rebins(mode) && !KeepsCells(); }
+  bool KeepsOnlyCells() const { return KeepsCells() && !Collects(mode); }
+  // Returns true if rays are needed for parts of the lens that no collected LF image covers
+  // (render/hybrid/lens_gaps.h).
+  bool FillsGaps() const { return KeepsCells() || mode == RenderMode::kHybrid; }
 
   // Returns true if the picture of a frame may depend on LF cameras whose LF images are not read
   // for it.

@@ -18,6 +18,7 @@
 #include "lf/core/ids.h"
 #include "lf/light_field/model/light_field.h"
 #include "lf/light_field/model/light_field_identity.h"
+#include "lf/render/settings/rebin_settings.h"
 #include "lf/render/settings/render_mode.h"
 #include "lf/selection/image_index.h"
 #include "lf/selection/image_order.h"
@@ -58,6 +59,8 @@ struct PackageChoices {
   // package with neighbours can be rendered in any mode, unless a packed store lacks the pixels
   // that another mode needs.
   RenderMode mode = RenderMode::kCollect;
+  // Interpolation for which they are computed: kPixels or kCells, or kAuto if the mode is kCollect.
+  RayInterpolation interpolation = RayInterpolation::kAuto;
 };
 
 // The part of an LF image that the frames of a package need.

@@ -23,7 +23,8 @@ Package TestPackage() {
   package.number = 4;
   package.count = 8;
   package.whole = {1000, "0123456789abcdef", "fedcba9876543210"};
-  package.choices = {ImageOrder::kRoundRobin, UINT64_MAX, 17, 0.25, true, RenderMode::kHybrid};
+  package.choices = {ImageOrder::kRoundRobin,  UINT64_MAX, 17, 0.25, true, RenderMode::kHybrid,
+                     RayInterpolation::kPixels};
   package.ranks.end = 1000;
   LightField& field = package.light_field;
   field.folder = "/nowhere/images";
@@ -217,6 +218,7 @@ TEST_F(PackageFileTest, ReadsWhatWasWrittenToTheBit) {
   EXPECT_EQ(read->choices.max_angle_rad, package.choices.max_angle_rad);
   EXPECT_EQ(read->choices.has_neighbours, package.choices.has_neighbours);
   EXPECT_EQ(read->choices.mode, package.choices.mode);
+  EXPECT_EQ(read->choices.interpolation, RayInterpolation::kPixels);
   EXPECT_EQ(read->ranks.of_images, package.ranks.of_images);
   EXPECT_EQ(read->ranks.end, package.ranks.end);
 
@@ -288,6 +290,28 @@ TEST_F(PackageFileTest, ReadsWhatWasWrittenToTheBit) {
     EXPECT_EQ(read->frames[f].image_count, package.frames[f].image_count);
     EXPECT_EQ(read->frames[f].ray_count, package.frames[f].ray_count);
   }
+}
+
+// Packages that were made before there were kept pixels do not have the setting.
+TEST_F(PackageFileTest, AModeWithoutInterpolationHasCells) {
+  const auto changed = [this](const std::string& statement) {
+    Write(TestPackage());
+    EXPECT_TRUE(Database::OpenToAppend(path_, kPackageFormat).value().Execute(statement));
+    return ReadPackage(path_, {.check_seal = false});
+  };
+  const Result<Package> old = changed("delete from settings where key = 'interpolation'");
+  ASSERT_TRUE(old) << old.error().message;
+  EXPECT_EQ(old->choices.interpolation, RayInterpolation::kCells);
+  const Result<Package> wrong =
+      changed("update settings set value = 'auto' where key = 'interpolation'");
+  ASSERT_FALSE(wrong);
+  EXPECT_NE(wrong.error().message.find("setting interpolation"), std::string::npos)
+      << wrong.error().message;
+  Package collected = TestPackage();
+  collected.choices.mode = RenderMode::kCollect;
+  collected.choices.interpolation = RayInterpolation::kAuto;
+  Write(collected);
+  EXPECT_EQ(ReadPackage(path_).value().choices.interpolation, RayInterpolation::kAuto);
 }
 
 TEST_F(PackageFileTest, KeepsTheNumbersOfTheFrames) {

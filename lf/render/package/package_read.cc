@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lf/core/parse_number.h"
+#include "lf/core/value_named.h"
 #include "lf/light_field/model/brackets.h"
 #include "lf/render/package/package_file.h"
 #include "lf/render/package/package_format.h"
@@ -128,6 +129,13 @@ Result<void> Reader::ReadChoices() {
   constexpr const char* kModes[] = {"collect", "rebin", "hybrid"};
   LF_ASSIGN_OR_RETURN(const int mode, settings_.Word("mode", kModes));
   choices.mode = *RenderModeOf(kModes[mode]);
+  if (!Rebins(choices.mode)) return {};
+  // Packages that were made before there were kept pixels do not have the key.
+  const std::string interpolation = settings_.Text("interpolation");
+  const auto found =
+      ValueNamed(interpolation, {RayInterpolation::kPixels, RayInterpolation::kCells});
+  if (!found && !interpolation.empty()) return settings_.Wrong("interpolation", "pixels or cells");
+  choices.interpolation = found.value_or(RayInterpolation::kCells);
   return {};
 }
 

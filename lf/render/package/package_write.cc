@@ -78,6 +78,8 @@ class Writer {
         {"mode", NameOf(choices.mode)},
         {"fps", fmt::format("{}", package_.path.fps)},
         {"path_unit_m", fmt::format("{}", package_.path.unit_m)}};
+    if (choices.interpolation != RayInterpolation::kAuto)
+      settings.emplace_back("interpolation", NameOf(choices.interpolation));
     if (package_.path.first_frame != 1)
       settings.emplace_back("first_frame", fmt::format("{}", package_.path.first_frame));
     if (package_.whole_virtual_count > 0)

@@ -11,6 +11,7 @@
 #include "lf/core/geometry.h"
 #include "lf/render/collect/frame_lens.h"
 #include "lf/render/pipeline/resolved_settings.h"
+#include "lf/render/settings/interpolation.h"
 
 namespace lf {
 namespace {
@@ -58,23 +59,27 @@ Result<void> CheckRecordingTimes(const Package& package, const FilmSettings& fil
         "the LF images are exposures of the same poses (lf_clipped), which cannot be told from "
         "those "
         "of other times: render each time as a film of its own ({time})");
-  if (film.Rebins())
+  if (KeepsCells(film))
     return UsageError(fmt::format(
-        "{{mode {}}}: the frames of a path that moves through time cannot share rebinned rays: use "
-        "{{mode collect}}, or render each time as a film of its own ({{time}})",
-        NameOf(film.mode)));
+        "{{mode {}}} with {{interpolation cells}}: the frames of a path that moves through time "
+        "cannot share cells: use {} or {{mode collect}}, or render each time as a film of its own "
+        "({{time}})",
+        NameOf(film.mode), PixelsInstead(film)));
   return {};
 }
 
-// Checks that a shard has no option that needs the rays of all shards.
+// Checks that a shard has no option that needs the rays of all shards. Kept pixels of the shards
+// add, unless pixels between them are interpolated.
 Result<void> CheckShard(const FilmSettings& film) {
   if (!film.shard) return {};
-  if (film.mode == RenderMode::kCollect && !film.stop_when.samples && !film.require.samples &&
-      !film.MeasuresNoise())
-    return {};
+  const bool adds =
+      film.mode == RenderMode::kCollect ||
+      (film.mode == RenderMode::kRebin && KeepsPixels(film) && film.rebin.kept != KeptRays::kEdges);
+  if (adds && !film.stop_when.samples && !film.require.samples && !film.MeasuresNoise()) return {};
   return UsageError(
-      "{shard} renders only a part of the LF images, but {mode rebin}, {mode hybrid}, {stop_when} "
-      "and {require} need all of them: leave out these options, or {shard}");
+      "{shard} renders only a part of the LF images, but {mode hybrid}, {mode rebin} with "
+      "{kept edges} or {interpolation cells}, {stop_when} and {require} need all of them: leave "
+      "out these options, or {shard}");
 }
 
 Result<void> CheckRebinnedRays(const Package& package, const FilmSettings& film,
@@ -84,9 +89,10 @@ Result<void> CheckRebinnedRays(const Package& package, const FilmSettings& film,
         "{mode rebin} collects no rays, which \"samples>=N\" ({stop_when}, {require}) and "
         "{smooth_below} would count: leave these options out, use \"noise<=X\", or use "
         "{mode hybrid}");
-  LF_RETURN_IF_ERROR(CheckOpacity(package.light_field.encoding, film.mode));
-  LF_RETURN_IF_ERROR(CheckLenses(package.path.cameras, film.mode));
-  LF_RETURN_IF_ERROR(CheckShutter(package.path.shutter.exists(), film.mode,
+  LF_RETURN_IF_ERROR(CheckInterpolation(film));
+  LF_RETURN_IF_ERROR(CheckOpacity(package.light_field.encoding, film));
+  LF_RETURN_IF_ERROR(CheckLenses(package.path.cameras, film));
+  LF_RETURN_IF_ERROR(CheckShutter(package.path.shutter.exists(), film,
                                   film.guard && package.whole_virtual_count > 0));
   LF_RETURN_IF_ERROR(CheckSlab(package, film, frames));
   if (film.Rebins() && !package.choices.has_neighbours)
@@ -95,11 +101,7 @@ Result<void> CheckRebinnedRays(const Package& package, const FilmSettings& film,
         "with {{lfpreprocessor lens_weights none}}: make the package again with "
         "{{mode {}}}, or without {{lens_weights none}}",
         NameOf(film.mode), package.name, NameOf(film.mode)));
-  if (film.Rebins() && film.max_image_count)
-    return UsageError(
-        fmt::format("{{max_images}} cannot be used with {{mode {}}}, in which all frames share the "
-                    "rebinned rays of all LF images: leave it out, or use {{mode collect}}",
-                    NameOf(film.mode)));
+  LF_RETURN_IF_ERROR(CheckMaxImages(film));
   if (!film.rebin.reparameterise && film.rebin.query.lens_sets > 1)
     return UsageError(
         "{reparameterise off} cannot be used with {lens_sets} above 1: leave one of them out");
@@ -114,7 +116,7 @@ Result<void> CheckLensWeights(const Package& package, const FilmSettings& film,
                               const std::vector<FrameId>& frames) {
   if (film.lens_weights == LensWeights::kNone) {
     for (const FrameId frame : frames)
-      if (package.path.Camera(frame).transmission && film.Collects())
+      if (package.path.Camera(frame).transmission)
         return UsageError(
             "the lens has a transmission (lens.transmission in the path), which lens weights "
             "state: leave out {lens_weights none} and options that count rays "
@@ -150,11 +152,11 @@ Result<void> CheckGuard(const Package& package, const FilmSettings& film) {
           "the light field is densified, and frames with a focal surface (focus.surface in the "
           "path) cannot be guarded: {}",
           kRemedy));
-  if (film.Rebins())
+  if (KeepsCells(film))
     return UsageError(fmt::format(
-        "{{mode {}}}: the light field is densified, and rebinned rays cannot be guarded: use "
-        "{{mode collect}}, or {}",
-        NameOf(film.mode), kRemedy));
+        "{{mode {}}} with {{interpolation cells}}: the light field is densified, and cells cannot "
+        "be guarded: use {} or {{mode collect}}, or {}",
+        NameOf(film.mode), PixelsInstead(film), kRemedy));
   if (package.light_field.encoding.bayer != BayerPattern::kNone)
     return UsageError(fmt::format(
         "the light field is densified, and frames of mosaics cannot be guarded: {}", kRemedy));

@@ -17,11 +17,11 @@ namespace lf {
 //   options  need not be resolved: the function calls Resolved()
 //   frames   numbers of the frames to render; empty: all frames of the package
 // Returns kUsage if the options are not compatible; if the lens of a frame is a pinhole but lens
-// weights by area need its area; if the path has a shutter but the mode is not kCollect; or if the
-// light field is densified but its frames cannot be guarded, because they have rebinned rays, the
-// path has a shutter, LF images are mosaics, or the package lacks the LF cameras
-// beside the lens; or if the path moves through time and one time is open, or the other way round,
-// or the mode is not kCollect.
+// weights by area need its area; if cells are kept (render/settings/interpolation.h) but the path
+// has a shutter or moves through time; or if the light field is densified but its frames cannot be
+// guarded, because they have cells, the path has a shutter, LF images are mosaics, or the package
+// lacks the LF cameras beside the lens; or if the path moves through time and one time is open, or
+// the other way round.
 Result<void> CheckFilmSettings(const Package& package, const FilmSettings& options,
                                const std::vector<FrameId>& frames);
 

@@ -12,6 +12,7 @@
 #include "lf/render/collect/mosaic_share.h"
 #include "lf/render/hybrid/frame_sampling.h"
 #include "lf/render/needs/frame_needs.h"
+#include "lf/render/settings/interpolation.h"
 
 namespace lf {
 
@@ -51,9 +52,14 @@ Result<void> FilmRenderer::Begin(const RunState* state, std::span<const FrameId>
                                       TakingInstants(frames_[f]), select_);
     });
   ChooseCorrections();
-  if (film_.Rebins()) LF_RETURN_IF_ERROR(PrepareRebinning(state));
+  if (KeepsPixels(film_))
+    LF_RETURN_IF_ERROR(PreparePixels(state));
+  else if (film_.Rebins())
+    LF_RETURN_IF_ERROR(PrepareRebinning(state));
+  else if (state != nullptr)
+    LF_RETURN_IF_ERROR(state->CheckNoRays());
   if (film_.HasPlates()) LF_RETURN_IF_ERROR(PreparePlates(state));
-  if (rebinned_ && film_.HasStopRule()) ForgetRaysAhead();
+  if ((rebinned_ || pixels_) && film_.HasStopRule()) ForgetRaysAhead();
   SelectForFrames();
   if (setup_.work().IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
 
@@ -63,6 +69,7 @@ Result<void> FilmRenderer::Begin(const RunState* state, std::span<const FrameId>
       setup_.light_field(), setup_.store(), FramesOfCollector(), images_, collect, setup_.pool());
   for (size_t i = 0; rebinned_ && i < rebinned_->section_count(); ++i)
     saved_rays_ranks_.push_back(rebinned_->ranks_done(i));
+  if (pixels_) saved_rays_ranks_.push_back(pixels_->ranks_done());
   EndEarlyFrames();
   DecideStops();  // an earlier run may have ended exactly where the stop rule is applied
   for (size_t f = 0; film_.HasPlates() && f < frames_.size(); ++f)
@@ -92,7 +99,8 @@ Result<void> FilmRenderer::FindLenses() {
 // Chooses how strongly mosaics are corrected, from all LF images that a frame may take: neither a
 // shard nor an earlier run changes the choice.
 void FilmRenderer::ChooseCorrections() {
-  if (!film_.HasPlates() || film_.reading.estimator != Estimator::kBilinear ||
+  if ((!film_.HasPlates() && !KeepsPixels(film_)) ||
+      film_.reading.estimator != Estimator::kBilinear ||
       film_.reading.filter != PixelFilter::kMosaic)
     return;
   std::vector<std::vector<LfImageId>> images(frames_.size());
@@ -149,10 +157,9 @@ CollectOptions FilmRenderer::OptionsOfCollector() const {
   collect.decision_ranks = 0;
   // The rays of all instants of a frame are collected before an interruption.
   collect.batch_frame_ray_count /= static_cast<uint64_t>(setup_.path().shutter.samples);
-  if (rebinned_) {
-    collect.consumer = rebinned_.get();
-    collect.decision_ranks = kDecisionRanks;
-  }
+  if (rebinned_ || pixels_) collect.decision_ranks = kDecisionRanks;
+  if (rebinned_) collect.consumer = rebinned_.get();
+  if (pixels_) collect.consumer = pixels_.get();
   return collect;
 }
 
@@ -160,14 +167,19 @@ std::vector<CollectedFrame> FilmRenderer::FramesOfCollector() {
   std::vector<CollectedFrame> collected;
   if (!film_.HasPlates()) return collected;
   for (Frame& frame : frames_) {
-    const FrameLens& first = frame.lenses.front();
-    collected.push_back({first.camera(), &frame.plate, frame.ranks, WeightsIn(first)});
-    for (const FrameLens& lens : std::span(frame.lenses).subspan(1))
-      collected.back().further.push_back({lens.camera(), WeightsIn(lens)});
-    collected.back().correction = frame.correction;
-    if (setup_.is_guarded()) collected.back().guard = GuardOf(frame);
+    collected.push_back(CollectedInto(&frame.plate, frame));
     if (film_.MeasuresNoise()) collected.back().moments = &frame.moments;
   }
+  return collected;
+}
+
+CollectedFrame FilmRenderer::CollectedInto(SensorPlate* plate, const Frame& frame) const {
+  const FrameLens& first = frame.lenses.front();
+  CollectedFrame collected{first.camera(), plate, frame.ranks, WeightsIn(first)};
+  for (const FrameLens& lens : std::span(frame.lenses).subspan(1))
+    collected.further.push_back({lens.camera(), WeightsIn(lens)});
+  collected.correction = frame.correction;
+  if (setup_.is_guarded()) collected.guard = GuardOf(frame);
   return collected;
 }
 
@@ -203,8 +215,10 @@ Result<void> FilmRenderer::PreparePlates(const RunState* state) {
       continue;
     }
     LF_ASSIGN_OR_RETURN(const FrameProgress start, LoadPlate(&frame, state));
-    if (frame.is_early) frame.is_early = LacksRays(f, start.ranks_done);
-    if (frame.is_early) frame.ranks.end = std::min(frame.ranks.end, start.ranks_done);
+    if (film_.Collects()) {  // otherwise EndEarlyFrames() decides, by the rays in memory
+      if (frame.is_early) frame.is_early = LacksRays(f, start.ranks_done);
+      if (frame.is_early) frame.ranks.end = std::min(frame.ranks.end, start.ranks_done);
+    }
     frame.ranks.begin = start.ranks_done;
     frame.earlier_rays = start.rays;
   }
@@ -224,6 +238,14 @@ bool FilmRenderer::LacksRays(size_t f, uint32_t ranks_done) const {
   }
   if (const RenderCamera* const reached = rebinned_ ? rebinned_->ReachedCamera(f) : nullptr)
     taking.push_back({*reached, {rebinned_->ranks_done(), frame.ranks.end}});
+  if (pixels_) {
+    std::vector<TakingFrame> of_kept = film_.Collects() ? TakingGaps(frame) : TakingInstants(frame);
+    if (!film_.Collects() && frame.all_lens) of_kept.push_back(Taking(frame, *frame.all_lens));
+    for (TakingFrame& kept : of_kept) {
+      kept.ranks = {pixels_->ranks_done(), frame.ranks.end};
+      taking.push_back(std::move(kept));
+    }
+  }
   return !SelectImages(setup_.index(), taking, select_, setup_.pool()).empty();
 }
 
@@ -315,6 +337,7 @@ void FilmRenderer::SelectForFrames() {
     std::erase_if(images_,
                   [this](const SelectedImage& image) { return !film_.shard->Holds(image.rank); });
   if (rebinned_) AddRebinnedImages();
+  if (pixels_) AddKeptImages();
 }
 
 void FilmRenderer::AddRebinnedImages() {
@@ -343,7 +366,7 @@ void FilmRenderer::AddRebinnedImages() {
 // or all of them, the frame is not finished early.
 void FilmRenderer::EndEarlyFrames() {
   if (film_.Collects()) return;
-  const uint32_t ranks_done = rebinned_->ranks_done();
+  const uint32_t ranks_done = RebinnedRanksDone();
   for (size_t f = 0; f < frames_.size(); ++f) {
     Frame& frame = frames_[f];
     if (!frame.is_early || frame.is_released) continue;
@@ -368,7 +391,7 @@ CollectProgress FilmRenderer::total() const {
 }
 
 FrameProgress FilmRenderer::Progress(size_t f) const {
-  if (!film_.HasPlates()) return {rebinned_->ranks_done(), {}};
+  if (!film_.HasPlates()) return {RebinnedRanksDone(), frames_[f].kept_rays};
   FrameProgress progress = collector_->frames()[f].progress;
   if (frames_[f].is_stopped) progress.ranks_done = frames_[f].next_decision;
   progress.rays += frames_[f].earlier_rays;
@@ -385,15 +408,23 @@ uint32_t FilmRenderer::RankOfEnd(size_t f) const {
 // (kInTheEnd), even if it takes only a part of the light field. A frame that was stopped or is
 // finished early is completed at its last rank. It has more gaps, because the LF images after this
 // rank do not cover them.
-std::optional<Completion> FilmRenderer::Complete(size_t f) {
-  if (!rebinned_) return std::nullopt;
+Result<std::optional<Completion>> FilmRenderer::Complete(size_t f) {
+  if (!rebinned_ && !pixels_) return std::optional<Completion>();
   const uint32_t done = Progress(f).ranks_done;
+  if (CollectsKept()) {
+    LF_RETURN_IF_ERROR(CollectKept(&frames_[f], done));
+    return std::optional<Completion>();
+  }
+  if (pixels_) return CompleteGaps(frames_[f], done);
   const bool is_all =
       !frames_[f].is_early && done >= std::min(frames_[f].ranks.end, setup_.index().rank_end());
-  return rebinned_->Complete(f, is_all ? LensGaps::kInTheEnd : done);
+  return std::optional(rebinned_->Complete(f, is_all ? LensGaps::kInTheEnd : done));
 }
 
-RenderedFrame FilmRenderer::Develop(size_t f) { return Develop(f, Complete(f), true, {}); }
+Result<RenderedFrame> FilmRenderer::Develop(size_t f) {
+  LF_ASSIGN_OR_RETURN(const std::optional<Completion> completion, Complete(f));
+  return Develop(f, completion, true, {});
+}
 
 RenderedFrame FilmRenderer::Develop(size_t f, const std::optional<Completion>& completion,
                                     bool with_effective,
@@ -402,7 +433,7 @@ RenderedFrame FilmRenderer::Develop(size_t f, const std::optional<Completion>& c
     return DevelopFrame(NotesOf(f), plate, completion ? &*completion : nullptr, with_effective,
                         setup_.pool(), is_interrupted);
   };
-  if (film_.Collects()) return develop(frames_[f].plate);
+  if (film_.Collects() || pixels_) return develop(PictureOf(f));
   const Intrinsics& plate = lenses(f).front().camera().pinhole.intrinsics;
   // The plate is empty, because the whole picture is interpolated.
   return develop(SensorPlate(plate.width_px, plate.height_px));
@@ -411,8 +442,8 @@ RenderedFrame FilmRenderer::Develop(size_t f, const std::optional<Completion>& c
 PlateNotes FilmRenderer::NotesOf(size_t f) const {
   const FrameId id = frames_[f].id;
   PlateNotes notes = MakePlateNotes(id, setup_.path().Camera(id),
-                                    film_.Collects() ? Progress(f).rays : FrameRays(), lenses(f),
-                                    setup_.light_field().encoding);
+                                    film_.Collects() ? Progress(f).rays : frames_[f].kept_rays,
+                                    lenses(f), setup_.light_field().encoding);
   notes.fps = setup_.path().fps;
   notes.first_frame = setup_.path().first_frame;
   notes.shutter = ShutterOf(setup_.path(), id);
@@ -427,6 +458,7 @@ PlateNotes FilmRenderer::NotesOf(size_t f) const {
 void FilmRenderer::Release(size_t f) {
   Frame& frame = frames_[f];
   frame.is_released = true;
+  frame.kept_plate = SensorPlate(0, 0);
   if (!film_.HasPlates()) return;
   collector_->Stop(f);
   frame.plate = SensorPlate(0, 0);

@@ -27,6 +27,8 @@
 #include "lf/render/collect/frame_lens.h"
 #include "lf/render/collect/noise_moments.h"
 #include "lf/render/collect/sample_rule.h"
+#include "lf/render/hybrid/frame_pixels.h"
+#include "lf/render/hybrid/gap_lens.h"
 #include "lf/render/hybrid/lens_gaps.h"
 #include "lf/render/hybrid/rebinned_rays.h"
 #include "lf/render/pipeline/develop_frame.h"
@@ -70,6 +72,11 @@ class FilmRenderer final : public FrameSource {
   FrameProgress Progress(size_t f) const override;
   // Must be called only if FilmSettings::HasPlates() is true.
   const SensorPlate& plate(size_t f) const { return frames_[f].plate; }
+  // The rays that the picture of the frame is developed from. With kRebin, they are those of the
+  // last call of Complete().
+  const SensorPlate& PictureOf(size_t f) const {
+    return CollectsKept() ? frames_[f].kept_plate : frames_[f].plate;
+  }
   // Returns the noise moments of the plate; null if noise is not measured, or if the moments lack
   // LF images whose rays are in the plate.
   const NoiseMoments* moments(size_t f) const {
@@ -91,10 +98,13 @@ class FilmRenderer final : public FrameSource {
   // work is divided into batches.
   uint32_t RankOfEnd(size_t f) const;
 
-  // Interpolates a frame from rebinned rays. Returns nullopt if the mode has none.
-  std::optional<Completion> Complete(size_t f) override;
+  // Interpolates a frame from rebinned rays, or completes it from kept pixels. If the mode is
+  // kRebin, collects the frame's plate from kept pixels. Returns nullopt if there is nothing to
+  // mix.
+  Result<std::optional<Completion>> Complete(size_t f) override;
+  void ForgetPicture(size_t f) override { frames_[f].kept_plate = SensorPlate(0, 0); }
   // Develops the rays that the frame has so far.
-  RenderedFrame Develop(size_t f);
+  Result<RenderedFrame> Develop(size_t f);
   RenderedFrame Develop(size_t f, const std::optional<Completion>& completion, bool with_effective,
                         const std::function<bool()>& is_interrupted) const override;
   // Measures samples and noise if FilmSettings::stop_when or require has a rule for them, and adds
@@ -122,8 +132,9 @@ class FilmRenderer final : public FrameSource {
   std::span<const SkippedImage> skipped() const override { return collector_->skipped(); }
   void AddTo(RenderReport* totals) const override;
   const CollectTimes& times() const { return collector_->times(); }
-  // The rebinned rays of the frames; null if the mode has none.
+  // The rebinned rays of the frames, or their kept pixels; null if the mode has none.
   const RebinnedRays* rebinned() const { return rebinned_.get(); }
+  const FramePixels* pixels() const { return pixels_.get(); }
   // kInput: no LF image contributes to any frame, and no ray was collected before. This is so if no
   // recorded ray passes both a frame's lens and the region that the frame sees.
   Result<void> CheckAnyContributes() const;
@@ -135,6 +146,10 @@ class FilmRenderer final : public FrameSource {
     std::vector<FrameLens> lenses;      // of its instants; empty until Begin()
     std::optional<FrameLens> all_lens;  // set if the plate is guarded
     SensorPlate plate{0, 0};
+    std::vector<GapLens> gaps;  // parts of the lenses that kept pixels complete, with kHybrid
+    // With kRebin, the rays that were collected from kept pixels, and their counts.
+    SensorPlate kept_plate{0, 0};
+    FrameRays kept_rays;
     NoiseMoments moments;  // moments of the plate; empty if noise is not measured
     // Places of the LF images that this run still collects. If there is an earlier run, the plate
     // already has the rays of the LF images at ranks before ranks.begin.
@@ -163,6 +178,18 @@ class FilmRenderer final : public FrameSource {
   const ImageIndex& counted_index() const {
     return setup_.is_guarded() ? setup_.index().recorded() : setup_.index();
   }
+  // True if the plates of frames are collected from kept pixels.
+  bool CollectsKept() const { return pixels_ != nullptr && !film_.Collects(); }
+  CollectedFrame CollectedInto(SensorPlate* plate, const Frame& frame) const;
+  uint32_t RebinnedRanksDone() const;
+  Result<void> PreparePixels(const RunState* state);
+  Result<void> FindGaps();
+  std::vector<TakingFrame> TakingGaps(const Frame& frame) const;
+  void AddKeptImages();
+  Result<void> CollectKept(Frame* frame, uint32_t rank_end);
+  Result<std::optional<Completion>> CompleteGaps(const Frame& frame, uint32_t rank_end);
+  Result<void> CollectFromKept(std::vector<CollectedFrame>* frame,
+                               std::span<const TakingFrame> taking) const;
   Result<void> PrepareRebinning(const RunState* state);
   Result<void> CheckReach(const LensGaps& gaps, FrameId frame) const;
   Result<void> PreparePlates(const RunState* state);
@@ -193,7 +220,8 @@ class FilmRenderer final : public FrameSource {
   std::vector<Frame> frames_;
   std::vector<SelectedImage> images_;
   std::unique_ptr<FrameCollector> collector_;
-  std::unique_ptr<RebinnedRays> rebinned_;  // the rebinned rays; null if the mode has none
+  std::unique_ptr<RebinnedRays> rebinned_;  // the rebinned rays; null if the film has none
+  std::unique_ptr<FramePixels> pixels_;     // the kept pixels; null if the film has none
   std::vector<uint32_t> saved_rays_ranks_;  // ranks_done of each section in the state on the disk
   CollectProgress done_;
 };

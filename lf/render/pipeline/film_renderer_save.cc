@@ -52,7 +52,12 @@ Result<void> FilmRenderer::SavePlates(RunState* state, std::span<const size_t> f
 }
 
 Result<void> FilmRenderer::SaveRays(RunState* state) {
-  for (size_t i = 0; i < saved_rays_ranks_.size(); ++i) {
+  if (pixels_ && pixels_->ranks_done() != saved_rays_ranks_[0]) {
+    LF_RETURN_IF_ERROR(state->SaveKept(id(0), RaysFrames(), pixels_->kept(), pixels_->ranks_done(),
+                                       setup_.pool()));
+    saved_rays_ranks_[0] = pixels_->ranks_done();
+  }
+  for (size_t i = 0; rebinned_ && i < saved_rays_ranks_.size(); ++i) {
     const uint32_t ranks_done = rebinned_->ranks_done(i);
     if (ranks_done == saved_rays_ranks_[i]) continue;
     LF_RETURN_IF_ERROR(
@@ -63,6 +68,7 @@ Result<void> FilmRenderer::SaveRays(RunState* state) {
 }
 
 void FilmRenderer::End(RunState* state) {
+  if (pixels_) state->RemoveRays();
   if (!rebinned_) return;
   if (rebinned_->facts().is_too_coarse)
     LogWarning(
@@ -75,6 +81,13 @@ void FilmRenderer::AddTo(RenderReport* totals) const {
   totals->load_cpu_s += times().load_cpu_s;
   totals->load_wall_s += times().load_wall_s;
   totals->collect_cpu_s += times().collect_cpu_s;
+  if (pixels_) {
+    const FramePixels::Facts facts = pixels_->facts();
+    totals->AddRebinning({1, facts.pixel_count, facts.looked_at, facts.cpu_s,
+                          facts.is_full     ? "some"
+                          : facts.keeps_all ? "all"
+                                            : "edges"});
+  }
   if (!rebinned_) return;
   const RebinnedRays::Facts facts = rebinned_->facts();
   totals->AddRebinning({facts.section_count, facts.cell_count, facts.looked_at, facts.cpu_s,
@@ -98,7 +111,7 @@ Result<void> FilmRenderer::WritePlateOf(size_t f, const std::filesystem::path& p
   notes.skipped_count = notes.skipped.size();
   for (auto& entry : TextOf(notes)) text.push_back(std::move(entry));
   if (film_.shard) text.emplace_back("shard", film_.shard->Text());
-  return WritePlate(path, text, plate(f), setup_.pool());
+  return WritePlate(path, text, PictureOf(f), setup_.pool());
 }
 
 }  // namespace lf

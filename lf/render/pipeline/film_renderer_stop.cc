@@ -67,7 +67,13 @@ void FilmRenderer::ForgetRaysAhead() {
   uint32_t least = UINT32_MAX;
   for (const Frame& frame : frames_)
     if (!frame.is_released) least = std::min(least, frame.ranks.begin);
-  for (size_t i = 0; i < rebinned_->section_count(); ++i) {
+  if (pixels_ && pixels_->ranks_done() > least) {
+    LogInfo(
+        "pixels are kept again, because they are those of more LF images than a frame has "
+        "collected");
+    pixels_->Restore(KeptPixels(pixels_->max_pixels()), 0);
+  }
+  for (size_t i = 0; rebinned_ && i < rebinned_->section_count(); ++i) {
     if (rebinned_->ranks_done(i) <= least) continue;
     LogInfo(
         "rebinned rays are made again, because they were made from more LF images than a frame has "
@@ -112,7 +118,7 @@ void FilmRenderer::DecideStops() {
     const uint32_t covered = RanksCovered(collector_->frames()[f].progress.ranks_done);
     if (covered < frame.next_decision) continue;
     // After an interruption, rebinned rays must catch up to the rank where the frame may stop.
-    if (rebinned_ && RanksCovered(rebinned_->ranks_done()) < frame.next_decision) continue;
+    if ((rebinned_ || pixels_) && RanksCovered(RebinnedRanksDone()) < frame.next_decision) continue;
     if (!IsEnough(f)) {
       frame.next_decision = DecisionFrom(f, covered + 1);
       continue;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <map>
 #include <string>
@@ -67,7 +68,7 @@ class FilmRendererTest : public FolderTest {
     options.picture = {{"picture.format", "exr"}};
     {
       const auto state = RunState::Open(options, renderer.setup().path()).value();
-      const RenderedFrame frame = renderer.Develop(0);
+      const RenderedFrame frame = renderer.Develop(0).value();
       EXPECT_TRUE(renderer.Save(state.get()));
       EXPECT_TRUE(WritePicture(renderer.NotesOf(0), frame.picture, state->FinishedPath(FrameId{1}),
                                options.format, {}, {}));
@@ -115,7 +116,7 @@ TEST_F(FilmRendererTest, FramesAreThoseOfAFolderInEveryMode) {
       const auto renderer = Open();
       Finish(*renderer);
       ASSERT_EQ(renderer->frame_count(), 3u);
-      ExpectSame(OfFolder(renderer->id(1)), renderer->Develop(1).picture.rgb);
+      ExpectSame(OfFolder(renderer->id(1)), renderer->Develop(1)->picture.rgb);
     }
 }
 
@@ -154,7 +155,7 @@ TEST_F(FilmRendererTest, AFrameWithAShutterIsTheSumOfItsInstants) {
     options_.lens_weights = weights;
     const auto weighted = Open();
     Finish(*weighted);
-    ExpectSame(OfFolder(weighted->id(1)), weighted->Develop(1).picture.rgb);
+    ExpectSame(OfFolder(weighted->id(1)), weighted->Develop(1)->picture.rgb);
   }
 }
 
@@ -177,7 +178,7 @@ TEST_F(FilmRendererTest, RulesAndLimitsHoldForAShutter) {
   ASSERT_TRUE(report.noise && report.noise->reached);
   EXPECT_LE(report.noise.value().reached.value(), 0.08);
   EXPECT_LT(renderer->RankOfEnd(1), 144u);
-  ExpectSame(OfFolder(renderer->id(1)), renderer->Develop(1).picture.rgb);
+  ExpectSame(OfFolder(renderer->id(1)), renderer->Develop(1)->picture.rgb);
   options_.stop_when.noise.reset();
   options_.stop_when.samples = 12;  // four at each instant
   renderer = Open();
@@ -186,14 +187,102 @@ TEST_F(FilmRendererTest, RulesAndLimitsHoldForAShutter) {
   EXPECT_LT(renderer->RankOfEnd(1), 144u);
 }
 
-TEST_F(FilmRendererTest, RebinnedRaysRefuseAShutter) {
+// If all pixels that frames ask for are kept, frames are the ones that are collected, for every
+// lens and every limit.
+TEST_F(FilmRendererTest, KeptPixelsGiveTheBitsOfCollection) {
+  for (const Estimator estimator : {Estimator::kNearest, Estimator::kBilinear})
+    for (const int what : {0, 1, 2, 3, 4}) {
+      SCOPED_TRACE(std::string(NameOf(estimator)) + " " + std::to_string(what));
+      const Package plain = film_;
+      options_ = {};
+      options_.reading.estimator = estimator;
+      for (RenderCamera& camera : film_.path.cameras) {
+        if (what == 1) camera.hood = {0.05, 0.02};
+        if (what == 2) camera.aperture.radius_w = 0.001;  // a lens between LF cameras
+      }
+      if (what == 3) AddShutterTo(&film_.path);
+      if (what == 4) options_.max_image_count = 7;
+      const auto collected = Open();
+      Finish(*collected);
+      options_.rebin.max_cells = 10'000'000;
+      for (const RenderMode mode : {RenderMode::kRebin, RenderMode::kHybrid}) {
+        options_.mode = mode;
+        const auto kept = Open();
+        Finish(*kept);
+        EXPECT_TRUE(kept->pixels()->facts().keeps_all);
+        for (size_t f = 0; f < 3; ++f) {
+          const auto picture = kept->Develop(f);
+          ASSERT_TRUE(picture) << picture.error().message;
+          const auto expected = collected->Develop(f);
+          EXPECT_EQ(kept->PictureOf(f), collected->plate(f));
+          EXPECT_EQ(picture->report.rays.accepted_count, expected->report.rays.accepted_count);
+          // A hybrid completes what collection leaves open.
+          const LargeVector<float>& share = picture->picture.interpolated.pixels();
+          if (std::all_of(share.begin(), share.end(), [](float part) { return part == 0; })) {
+            EXPECT_EQ(picture->picture.rgb.pixels(), expected->picture.rgb.pixels());
+          }
+        }
+        ExpectSame(OfFolder(kept->id(1)), kept->Develop(1)->picture.rgb);
+      }
+      film_ = plain;
+    }
+}
+
+// A frame gets light for the part of its lens that no LF camera sees through.
+TEST_F(FilmRendererTest, AHybridCompletesALensBeyondTheCapture) {
+  options_ = {};
+  options_.mode = RenderMode::kHybrid;
+  options_.rebin.max_cells = 10'000'000;
+  for (const bool has_shutter : {false, true}) {
+    SCOPED_TRACE(has_shutter);
+    film_.path.cameras = testing::NoiseFrames();
+    for (RenderCamera& camera : film_.path.cameras) camera.aperture.radius_w = 0.08;
+    if (has_shutter) AddShutterTo(&film_.path);
+    const auto renderer = Open();
+    Finish(*renderer);
+    const RenderedFrame frame = renderer->Develop(1).value();
+    ASSERT_FALSE(frame.picture.interpolated.empty());
+    EXPECT_GT(frame.picture.interpolated.at(40, 30), 0.2);
+    EXPECT_LT(frame.picture.interpolated.at(40, 30), 0.9);
+    options_.mode = RenderMode::kCollect;
+    const auto collected = Open();
+    Finish(*collected);
+    EXPECT_EQ(renderer->plate(1), collected->plate(1));
+    EXPECT_NE(collected->Develop(1)->picture.rgb.pixels(), frame.picture.rgb.pixels());
+    options_.mode = RenderMode::kHybrid;
+    ExpectSame(OfFolder(renderer->id(1)), frame.picture.rgb);
+  }
+}
+
+TEST_F(FilmRendererTest, PixelsAtEdgesAreTheSameForAnyThreadsAndInterruptions) {
+  options_ = {};
+  options_.mode = RenderMode::kRebin;
+  options_.rebin.kept = KeptRays::kEdges;
+  options_.rebin.max_cells = 3000;  // far too few
+  const auto whole = Open();
+  Finish(*whole);
+  EXPECT_TRUE(whole->pixels()->facts().is_full);
+  EXPECT_LE(whole->pixels()->kept().size(), 3000u);
+  const auto begun = Open();
+  ASSERT_TRUE(begun->Step().value());
+  FilmRenderer renderer(begun->setup(), begun->setup().frames());
+  const auto earlier = StateOf(*begun);
+  ASSERT_TRUE(renderer.Begin(earlier.get()));
+  EXPECT_GT(renderer.pixels()->ranks_done(), 0u);
+  Finish(renderer);
+  EXPECT_EQ(renderer.Develop(1)->picture.rgb.pixels(), whole->Develop(1)->picture.rgb.pixels());
+}
+
+TEST_F(FilmRendererTest, CellsRefuseAShutter) {
   AddShutterTo(&film_.path);
+  options_.rebin.interpolation = RayInterpolation::kCells;
   for (const RenderMode mode : {RenderMode::kRebin, RenderMode::kHybrid}) {
     options_.mode = mode;
     const auto renderer = FilmRenderer::Open(film_, options_, work_, {}, pool_);
     ASSERT_FALSE(renderer);
     EXPECT_EQ(renderer.error().kind, ErrorKind::kUsage);
-    EXPECT_NE(renderer.error().message.find("use {mode collect}"), std::string::npos);
+    EXPECT_NE(renderer.error().message.find("use {interpolation pixels} or {mode collect}"),
+              std::string::npos);
   }
   options_.mode = RenderMode::kCollect;
   film_.whole_virtual_count = 1;
@@ -215,7 +304,7 @@ TEST_F(FilmRendererTest, StopRulesAreThoseOfAFolder) {
   FrameReport report;
   ASSERT_TRUE(renderer->Measure(1, &report));
   EXPECT_GE(report.samples.value().measured.share, kMostElements);
-  ExpectSame(OfFolder(renderer->id(1)), renderer->Develop(1).picture.rgb);
+  ExpectSame(OfFolder(renderer->id(1)), renderer->Develop(1)->picture.rgb);
 }
 
 TEST_F(FilmRendererTest, PicturesBetweenStepsChangeNothing) {
@@ -223,14 +312,14 @@ TEST_F(FilmRendererTest, PicturesBetweenStepsChangeNothing) {
   std::map<float, int> sums;  // number of pictures, by the sum of their values
   for (bool is_going_on = true; is_going_on;) {
     is_going_on = looked_at->Step().value();
-    const RenderedFrame frame = looked_at->Develop(0);
+    const RenderedFrame frame = looked_at->Develop(0).value();
     float sum = 0;
     for (const float value : frame.picture.rgb.pixels()) sum += value;
     ++sums[sum];
   }
   Finish(*alone);
   EXPECT_GT(sums.size(), 2u);
-  EXPECT_EQ(looked_at->Develop(0).picture.rgb.pixels(), alone->Develop(0).picture.rgb.pixels());
+  EXPECT_EQ(looked_at->Develop(0)->picture.rgb.pixels(), alone->Develop(0)->picture.rgb.pixels());
 }
 
 TEST_F(FilmRendererTest, AnInterruptedStepGoesOn) {
@@ -244,7 +333,7 @@ TEST_F(FilmRendererTest, AnInterruptedStepGoesOn) {
   EXPECT_EQ(step.error().kind, ErrorKind::kInterrupted);
   interrupted = false;
   Finish(*renderer);
-  EXPECT_EQ(renderer->Develop(2).picture.rgb.pixels(), whole->Develop(2).picture.rgb.pixels());
+  EXPECT_EQ(renderer->Develop(2)->picture.rgb.pixels(), whole->Develop(2)->picture.rgb.pixels());
 }
 
 TEST_F(FilmRendererTest, GoesOnFromAnEarlierRun) {
@@ -258,9 +347,9 @@ TEST_F(FilmRendererTest, GoesOnFromAnEarlierRun) {
   EXPECT_TRUE(renderer.EndsEarly(2));
   Finish(renderer);
   EXPECT_EQ(renderer.Progress(1).rays.accepted_count, whole->Progress(1).rays.accepted_count);
-  EXPECT_EQ(renderer.Develop(1).picture.rgb.pixels(), whole->Develop(1).picture.rgb.pixels());
-  EXPECT_EQ(renderer.Develop(2).picture.rgb.pixels(), begun->Develop(2).picture.rgb.pixels());
-  EXPECT_NE(renderer.Develop(2).picture.rgb.pixels(), whole->Develop(2).picture.rgb.pixels());
+  EXPECT_EQ(renderer.Develop(1)->picture.rgb.pixels(), whole->Develop(1)->picture.rgb.pixels());
+  EXPECT_EQ(renderer.Develop(2)->picture.rgb.pixels(), begun->Develop(2)->picture.rgb.pixels());
+  EXPECT_NE(renderer.Develop(2)->picture.rgb.pixels(), whole->Develop(2)->picture.rgb.pixels());
 }
 
 TEST_F(FilmRendererTest, AFrameThatHasAllItsRaysIsNotCutShort) {
@@ -276,7 +365,7 @@ TEST_F(FilmRendererTest, AFrameThatHasAllItsRaysIsNotCutShort) {
     EXPECT_FALSE(renderer.EndsEarly(2));
     Finish(renderer);
     EXPECT_FALSE(renderer.NotesOf(2).ranks_done);
-    EXPECT_EQ(renderer.Develop(2).picture.rgb.pixels(), whole->Develop(2).picture.rgb.pixels());
+    EXPECT_EQ(renderer.Develop(2)->picture.rgb.pixels(), whole->Develop(2)->picture.rgb.pixels());
   }
 }
 

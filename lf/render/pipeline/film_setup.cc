@@ -13,6 +13,7 @@
 #include "lf/render/pipeline/check_film_settings.h"
 #include "lf/render/pipeline/resolved_settings.h"
 #include "lf/render/pipeline/warn_of_other_film.h"
+#include "lf/render/settings/interpolation.h"
 #include "lf/storage/load/measure_footprint.h"
 #include "lf/storage/load/open_store.h"
 
@@ -100,11 +101,12 @@ Result<void> FilmSetup::PlanMemory() {
   const Intrinsics& plate = path().Camera(frames_.front()).pinhole.intrinsics;
   LF_ASSIGN_OR_RETURN(
       const RenderMemory memory,
-      PlanRenderMemory(work_.memory_bytes, film_.mode, film_.rebin.max_cells, light_field(),
-                       film_.reading, plate.width_px, plate.height_px, frames_.size(),
-                       pool_.thread_count(), film_.MeasuresNoise() ? NoiseMoments::kMostBytes : 0,
-                       is_guarded(), static_cast<size_t>(path().shutter.samples),
-                       LargestSurface(path(), frames_), References()));
+      PlanRenderMemory(work_.memory_bytes, film_.mode, film_.rebin.interpolation,
+                       film_.rebin.max_cells, light_field(), film_.reading, plate.width_px,
+                       plate.height_px, frames_.size(), pool_.thread_count(),
+                       film_.MeasuresNoise() ? NoiseMoments::kMostBytes : 0, is_guarded(),
+                       static_cast<size_t>(path().shutter.samples), LargestSurface(path(), frames_),
+                       References()));
   plan_ = memory.plan;
   max_cells_ = memory.max_cells;
   enough_bytes_ = memory.enough_bytes;
@@ -142,7 +144,7 @@ NeedsOptions FilmSetup::Needs() const {
 SelectOptions FilmSetup::Select() const { return Needs().select; }
 
 Result<void> FilmSetup::PlanSlabs() {
-  if (!film_.Rebins() || slabs_) return {};
+  if (!KeepsCells(film_) || slabs_) return {};
   const SelectOptions select = Select();
   std::vector<SampledFrame> frames;
   for (const FrameId frame : path().frames().All()) {

@@ -12,8 +12,10 @@
 #include <vector>
 
 #include "lf/render/collect/test_noise_field.h"
+#include "lf/render/hybrid/frame_pixels.h"
 #include "lf/render/hybrid/rebinned_rays.h"
 #include "lf/render/pipeline/film_renderer.h"
+#include "lf/render/settings/interpolation.h"
 #include "lf/selection/reference_groups.h"
 
 namespace lf {
@@ -115,7 +117,7 @@ class FilmSetupTest : public ::testing::Test {
       is_going_on = renderer.Step();
     std::vector<Image<float>> pictures;
     for (size_t f = 0; f < renderer.frame_count(); ++f)
-      pictures.push_back(renderer.Develop(f).picture.rgb);
+      pictures.push_back(renderer.Develop(f)->picture.rgb);
     return pictures;
   }
   double DecodingsPerImage() const {
@@ -164,10 +166,14 @@ TEST_F(FilmSetupTest, WithLittleMemoryGroupsAreDecodedOnceAndHaveTheSameFrames) 
 TEST_F(FilmSetupTest, TheNoteNamesMemoryThatSuffices) {
   for (const RenderMode mode : {RenderMode::kCollect, RenderMode::kHybrid, RenderMode::kRebin}) {
     film_.mode = mode;
-    if (film_.Rebins()) film_.rebin.max_cells = RebinnedRays::kLeastCells;
+    if (film_.Rebins()) film_.rebin.max_cells = RebinSettings::kLeastCells;
     const uint64_t rays_mib =
-        film_.Rebins() ? RebinnedRays::BytesOf(RebinnedRays::kLeastCells) / kMiB + 1 : 0;
-    const std::string note = Open(ImageOrder::kSpread, kLittle + rays_mib).value()->ReferenceNote();
+        KeepsCells(film_)    ? RebinnedRays::BytesOf(RebinSettings::kLeastCells) / kMiB + 1
+        : KeepsPixels(film_) ? FramePixels::BytesOf(RebinSettings::kLeastCells) / kMiB + 1
+                             : 0;
+    const auto little = Open(ImageOrder::kSpread, kLittle + rays_mib);
+    ASSERT_TRUE(little) << little.error().message;
+    const std::string note = (*little)->ReferenceNote();
     EXPECT_NE(note.find("decoded several times"), std::string::npos) << note;
     EXPECT_NE(note.find("{order groups}"), std::string::npos) << note;
     const size_t at = note.find("give {memory ");

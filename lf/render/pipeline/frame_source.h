@@ -74,9 +74,13 @@ class FrameSource {
   virtual bool IsReleased(size_t f) const = 0;
   bool AreAllReleased() const;
 
-  // Returns the part of the picture that is interpolated from rebinned rays; nullopt if there is
-  // none. Only one thread at a time may call it.
-  virtual std::optional<Completion> Complete(size_t f) = 0;
+  // Returns the part of the picture that is interpolated from rays in memory; nullopt if there is
+  // none. Must be called before Develop(), WritePlateOf() and Progress() of a frame that is
+  // finished, because it may collect the frame's rays. Only one thread at a time may call it.
+  // kInterrupted: WorkSettings::stop is set. kOutput: there is not enough memory.
+  virtual Result<std::optional<Completion>> Complete(size_t f) = 0;
+  // Frees what Complete() made for the picture of a frame; Complete() makes it again.
+  virtual void ForgetPicture(size_t /*f*/) {}
   // Develops what was collected of the frame so far. FrameReport::samples and noise are not set,
   // because Measure() sets them. Several threads may call Develop(), Measure() and NotesOf() at the
   // same time, for different frames.

@@ -158,8 +158,8 @@ TEST_F(GuardedRenderTest, PlatesHoldTheFilmBeforeAndAfterDensifying) {
       const FrameRays rays = guarded->Progress(f).rays;
       EXPECT_EQ(rays.image_count, before->Progress(f).rays.image_count);
       EXPECT_EQ(rays.accepted_count, before->Progress(f).rays.accepted_count);
-      const Image<float> effective = guarded->Develop(f).picture.effective_count;
-      EXPECT_EQ(effective.pixels(), before->Develop(f).picture.effective_count.pixels());
+      const Image<float> effective = guarded->Develop(f)->picture.effective_count;
+      EXPECT_EQ(effective.pixels(), before->Develop(f)->picture.effective_count.pixels());
     }
   }
 }
@@ -168,7 +168,7 @@ TEST_F(GuardedRenderTest, PlatesHoldTheFilmBeforeAndAfterDensifying) {
 TEST_F(GuardedRenderTest, InFocusThePictureIsThatOfRecordedImages) {
   const auto guarded = Rendered(Densified([](uint32_t, size_t) { return uint16_t{1000}; }));
   const auto before = Rendered(Recorded());
-  const DevelopedFrame picture = guarded->Develop(0).picture, wanted = before->Develop(0).picture;
+  const DevelopedFrame picture = guarded->Develop(0)->picture, wanted = before->Develop(0)->picture;
   size_t count = 0;
   for (int y = 0; y < picture.rgb.height(); ++y)
     for (int x = 0; x < picture.rgb.width(); ++x) {
@@ -184,7 +184,7 @@ TEST_F(GuardedRenderTest, FarOutOfFocusOrAtUnknownDepthsItIsThatOfAll) {
   for (const uint16_t number : {20000, 0}) {
     const LightField densified = Densified([=](uint32_t, size_t) { return number; });
     const auto guarded = Rendered(densified), all = Rendered(densified, false);
-    const DevelopedFrame picture = guarded->Develop(0).picture, wanted = all->Develop(0).picture;
+    const DevelopedFrame picture = guarded->Develop(0)->picture, wanted = all->Develop(0)->picture;
     EXPECT_TRUE(wanted.densified.empty());
     for (int y = 0; y < picture.rgb.height(); ++y)
       for (int x = 0; x < picture.rgb.width(); ++x) {
@@ -206,7 +206,7 @@ TEST_F(GuardedRenderTest, VirtualLightIsShownAsFarAsItIsTrusted) {
     options_.lens_weights = weights;
     const auto guarded = Rendered(field);
     const SensorPlate& plate = guarded->plate(0);
-    const RenderedFrame rendered = guarded->Develop(0);
+    const RenderedFrame rendered = guarded->Develop(0).value();
     const DevelopedFrame& picture = rendered.picture;
     ASSERT_EQ(picture.effective_count.empty(), weights == LensWeights::kNone);
     const auto mean = [&](int x, int y, int channel) {
@@ -307,8 +307,9 @@ TEST_F(GuardedRenderTest, ResumesToTheSameBits) {
   EXPECT_NE(refused.error().message.find("guard"), std::string::npos);
 }
 
-TEST_F(GuardedRenderTest, RebinnedRaysAreRefused) {
+TEST_F(GuardedRenderTest, CellsAreRefused) {
   const LightField densified = WithNoiseDepths();
+  options_.rebin.interpolation = RayInterpolation::kCells;
   for (const RenderMode mode : {RenderMode::kRebin, RenderMode::kHybrid}) {
     options_.mode = mode;
     const auto refused =

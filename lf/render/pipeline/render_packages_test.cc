@@ -104,7 +104,7 @@ TEST_F(OpenPackagesTest, ReportAndProgressAddUpThePackages) {
   const std::vector<fs::path> paths = {Packed(1, with_images), Packed(3, with_images)};
   ThreadPool pool(2);
   RenderOptions options;
-  options.film.mode = RenderMode::kHybrid;
+  options.film.mode = RenderMode::kRebin;
   options.folder.contact_sheet = false;
   const auto render = [&](const std::string& name, const std::vector<fs::path>& files,
                           RenderProgress* last) {

@@ -118,14 +118,16 @@ Result<void> RenderPass::FinishAtOnce(std::span<const size_t> frames) {
   std::vector<Finishing> finishing(frames.size());
   for (size_t i = 0; i < frames.size(); ++i) {
     finishing[i].f = frames[i];
-    finishing[i].completion = source_->Complete(frames[i]);
+    LF_ASSIGN_OR_RETURN(finishing[i].completion, source_->Complete(frames[i]));
   }
   context_.setup.pool().ForEach(finishing.size(), [&](size_t i) {
     finishing[i].written = WriteFiles(finishing[i].f, finishing[i].completion);
   });
   LF_RETURN_IF_ERROR(EndRecords());
-  for (auto& [f, completion, written] : finishing)
+  for (auto& [f, completion, written] : finishing) {
+    source_->ForgetPicture(f);
     if (written) recording_.push_back({f, *std::move(written)});
+  }
   BeginRecords();
   for (const auto& [f, completion, written] : finishing)
     if (!written && written.error().kind != ErrorKind::kInterrupted) return written.error();

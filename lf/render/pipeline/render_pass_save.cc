@@ -48,8 +48,12 @@ Result<void> RenderPass::SavePictures(double picture_budget_s) {
   if (IsStopped()) is_interrupted = [=] { return NowSeconds() - begin_s >= picture_budget_s; };
   for (const size_t f : oldest_first) {
     if (NowSeconds() - begin_s >= picture_budget_s) break;
-    const Result<FrameReport> written = WritePicture(
-        f, source_->Complete(f), context_.state.PicturePath(source_->id(f)), is_interrupted);
+    const Result<std::optional<Completion>> completion = source_->Complete(f);
+    const Result<FrameReport> written =
+        completion ? WritePicture(f, *completion, context_.state.PicturePath(source_->id(f)),
+                                  is_interrupted)
+                   : completion.error();
+    source_->ForgetPicture(f);
     // Interrupt() saves the state after the signal, and then writes pictures again.
     if (!written && written.error().kind == ErrorKind::kInterrupted) return {};
     LF_RETURN_IF_ERROR(written);

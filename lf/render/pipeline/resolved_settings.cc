@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lf/render/pipeline/resolved_settings.h"
 
+#include "lf/render/settings/interpolation.h"
+
 namespace lf {
 
 FilmSettings Resolved(FilmSettings settings, const Package& package) {
@@ -8,7 +10,8 @@ FilmSettings Resolved(FilmSettings settings, const Package& package) {
   settings.seed = package.choices.seed;
   settings.rebin.rebin.seed = settings.rebin.query.seed = settings.seed;
   settings.max_angle_rad = package.choices.max_angle_rad;
-  if (settings.mode == RenderMode::kRebin ||
+  if (settings.Rebins()) settings.rebin.interpolation = InterpolationOf(settings);
+  if (!HasLensWeights(settings) ||
       (settings.lens_weights == LensWeights::kAuto && settings.CountsRays()))
     settings.lens_weights = LensWeights::kNone;
   settings.reading.filter = FilterOf(settings.reading.filter, package.light_field.encoding);
@@ -27,7 +30,7 @@ NeedsOptions NeedsOfFilm(const Package& package, const FilmSettings& film,
   needs.max_image_count = film.max_image_count;
   needs.mode = film.mode;
   needs.rebin = film.rebin;
-  needs.guard = film.guard && film.mode == RenderMode::kCollect && package.whole_virtual_count > 0;
+  needs.guard = film.guard && !KeepsCells(film) && package.whole_virtual_count > 0;
   return needs;
 }
 

@@ -11,7 +11,10 @@ namespace lf {
 // Returns the settings, with these values replaced by what follows from the package and from other
 // settings:
 //   order, seed, max_angle_rad  those that the package was made with; rebin has the same seed
-//   lens_weights     kNone if the mode is kRebin, or if it was kAuto and rays are counted
+//   rebin.interpolation  if the mode rebins: the choice of InterpolationOf() (settings/
+//                    interpolation.h), never kAuto
+//   lens_weights     kNone if frames are interpolated between cells alone (the mode is kRebin), or
+//                    if it was kAuto and rays are counted
 //   reading.filter   if it was kAuto: the choice of FilterOf() (collection/gather_sampling.h)
 //   guard            false unless the light field is densified
 //   max_image_count  the limit that the package was made with, if it was unset

@@ -52,11 +52,11 @@ struct FilmSettings {
 
   // If set, a frame takes at most this number of LF images: the first ones in the order that
   // contribute to it. Must be above 0, and must not exceed the limit that the package was made
-  // with. Must be unset if the mode rebins.
+  // with. Must be unset if KeepsCells() (interpolation.h).
   std::optional<size_t> max_image_count;
   // If set, frames take only the LF images of this shard. MergeShards() adds their plates to the
   // plates of the other shards. Cannot be combined with rules that count rays or measure noise, nor
-  // with rebinned rays.
+  // with kHybrid, cells or KeptRays::kEdges.
   std::optional<Shard> shard;
 
   // A frame is finished when this rule is met.

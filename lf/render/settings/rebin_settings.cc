@@ -14,6 +14,17 @@ const char* NameOf(KeptRays kept) {
   }
 }
 
+const char* NameOf(RayInterpolation interpolation) {
+  switch (interpolation) {
+    case RayInterpolation::kPixels:
+      return "pixels";
+    case RayInterpolation::kCells:
+      return "cells";
+    default:
+      return "auto";
+  }
+}
+
 const char* NameOf(Previews previews) {
   switch (previews) {
     case Previews::kOn:

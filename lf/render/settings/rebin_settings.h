@@ -19,6 +19,15 @@ enum class KeptRays {
 // Returns "auto", "all" or "edges".
 const char* NameOf(KeptRays kept);
 
+// Says between what rays are interpolated (render/settings/interpolation.h).
+enum class RayInterpolation {
+  kAuto,    // InterpolationOf() chooses
+  kPixels,  // kept pixels of each LF image; frames are collected from them
+  kCells,   // cells of a slab, by Gaussian kernels
+};
+// Returns "auto", "pixels" or "cells".
+const char* NameOf(RayInterpolation interpolation);
+
 // Says which frames have previews. A preview is a picture of an unfinished frame. Rebinned rays are
 // kept for it, in addition to those that the finished frame needs. Only a frame that also collects
 // rays can have previews.
@@ -31,7 +40,7 @@ enum class Previews {
 const char* NameOf(Previews previews);
 inline constexpr size_t kPreviewedFrom = 256;
 
-// How a frame is interpolated from rebinned rays.
+// How a frame is interpolated between cells.
 struct QueryOptions {
   // Least sigma of the kernels (rebinning/ray_query.h) in the lens plane, in distances between LF
   // cameras.
@@ -45,7 +54,10 @@ struct QueryOptions {
   uint64_t seed = 0;  // seed of the positions of the lens points
 };
 
+// The members query, reparameterise, is_reference, nearest, slab and coverage, and
+// averages_others and colour_sigma_px of `rebin`, are used for cells alone.
 struct RebinSettings {
+  RayInterpolation interpolation = RayInterpolation::kAuto;
   RebinOptions rebin;
   KeptRays kept = KeptRays::kAuto;
   Previews previews = Previews::kAuto;

@@ -9,6 +9,7 @@
 
 #include "lf/core/geometry.h"
 #include "lf/core/parse_number.h"
+#include "lf/render/settings/interpolation.h"
 #include "lf/render/settings/setting_rows.h"
 
 namespace lf {
@@ -27,11 +28,13 @@ double DegreesOf(double angle_rad) {
 void AddPictureRows(std::vector<Setting>& rows) {
   rows.push_back(Choice(
       {.key = "mode",
-       .text = "How frames are made from recorded rays\n"
-               "collect: frames are averages of the recorded rays\n"
-               "rebin: frames are interpolated between rays that are kept in memory\n"
-               "hybrid: frames are collected; where no recorded ray passes the lens, they are "
-               "interpolated"},
+       .text =
+           "How frames are made from recorded rays\n"
+           "collect: frames are averages of the recorded rays\n"
+           "rebin: frames are made of rays that are kept in memory, interpolated where some are "
+           "missing\n"
+           "hybrid: frames are collected; where no recorded ray passes the lens, they are "
+           "interpolated"},
       LF_MEMBER(mode), Named({RenderMode::kCollect, RenderMode::kRebin, RenderMode::kHybrid})));
   // "auto" is bilinear, the first word with this value, and comes first for get().
   Setting estimator =
@@ -190,25 +193,24 @@ void AddMeasuringRows(std::vector<Setting>& rows) {
                         LF_MEMBER(back_end),
                         Words<CollectBackEnd>{{"fast", CollectBackEnd::kFast},
                                               {"reference", CollectBackEnd::kReference}}));
-  rows.push_back(
-      Plain({.key = "nearest",
-             .matters = [](const FilmSettings& film) { return film.Rebins(); },
-             .placeholder = "N",
-             .most = 1000,
-             .text = "Interpolate from the N nearest rays (all within 3 sigma)\n"
-                     "Needs {back_end reference}. The N nearest rays are used at any distance. 0: "
-                     "all rays within three times {sigma_st} and {sigma_uv} are used."},
-            LF_MEMBER(rebin.nearest)));
-  rows.push_back(
-      Plain({.key = "coverage_cells",
-             .matters = [](const FilmSettings& film) { return film.Rebins(); },
-             .placeholder = "N",
-             .least = 4,
-             .most = 1024,
-             .text = "Cells of the coverage map across a frame\n"
-                     "The coverage map finds rays that no frame needs, so that they are not kept. "
-                     "A map of more cells finds more of these rays."},
-            LF_MEMBER(rebin.coverage.cells_across)));
+  rows.push_back(Plain({.key = "nearest",
+                        .placeholder = "N",
+                        .most = 1000,
+                        .text = "Interpolate from the N nearest rays (all within 3 sigma)\n"
+                                "Needs {back_end reference}, and chooses {interpolation cells}. "
+                                "The N nearest rays are used at any distance. 0: "
+                                "all rays within three times {sigma_st} and {sigma_uv} are used."},
+                       LF_MEMBER(rebin.nearest)));
+  rows.push_back(Plain(
+      {.key = "coverage_cells",
+       .placeholder = "N",
+       .least = 4,
+       .most = 1024,
+       .text = "Cells of the coverage map across a frame\n"
+               "The coverage map finds rays that no frame needs, so that they are not kept. "
+               "A map of more cells finds more of these rays. Another number than the default "
+               "chooses {interpolation cells}."},
+      LF_MEMBER(rebin.coverage.cells_across)));
 }
 
 }  // namespace
@@ -228,6 +230,8 @@ std::span<const Setting> SettingTable() {
     for (size_t i = begin_of_rebinning; i < made.size(); ++i)
       made[i].matters = [](const FilmSettings& film) { return film.Rebins(); };
     add(SettingGroup::kMeasuring, AddMeasuringRows);
+    for (Setting& setting : made)
+      if (IsOfCells(setting.key)) setting.matters = KeepsCells;
     return made;
   }();
   return rows;

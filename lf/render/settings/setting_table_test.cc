@@ -82,6 +82,9 @@ TEST(SettingTable, RecordsSettingsThatMatterByRole) {
             "seed 0\nback_end fast\n");
   EXPECT_EQ(texts(film, SettingRole::kMeasuring), "require noise<=0.5\n");
   film.mode = RenderMode::kRebin;
+  EXPECT_NE(texts(film, SettingRole::kRays).find("interpolation auto"), std::string::npos);
+  EXPECT_EQ(texts(film, SettingRole::kRays).find("sigma_st"), std::string::npos);
+  film.rebin.interpolation = RayInterpolation::kCells;
   EXPECT_NE(texts(film, SettingRole::kRays).find("sigma_st"), std::string::npos);
 }
 

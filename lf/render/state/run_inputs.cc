@@ -208,7 +208,7 @@ std::optional<InputDifference> FirstDifference(const RunInputs& recorded, const 
   const auto value_in = [](const RunInputs& inputs, const std::string& key) -> std::string {
     for (const auto& [name, value] : inputs)
       if (name == key) return value;
-    return kNoInput;
+    return key == "interpolation" ? NameOf(RayInterpolation::kCells) : kNoInput;
   };
   for (const auto& [key, value] : wanted)
     if (const std::string other = value_in(recorded, key); other != value)

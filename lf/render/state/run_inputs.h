@@ -99,7 +99,9 @@ struct InputDifference {
   // KEY", such as "no order".
   std::string Text(const std::string& one, const std::string& other) const;
 };
-// Returns nullopt if both have the same keys and values, in any order.
+// Returns nullopt if both have the same keys and values, in any order. A side that lacks the key
+// "interpolation" counts as "interpolation cells", because renders that were begun before there
+// were kept pixels lack it.
 std::optional<InputDifference> FirstDifference(const RunInputs& recorded, const RunInputs& wanted);
 
 }  // namespace lf

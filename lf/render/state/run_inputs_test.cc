@@ -165,6 +165,32 @@ TEST(RunInputs, DifferencesAreReadable) {
   EXPECT_EQ(FirstDifference({{"a", "1"}}, {})->Text("has", "this has"), "has a 1, this has no a");
 }
 
+// Renders that were begun before there were kept pixels have no input "interpolation".
+TEST(RunInputs, ARenderWithoutAnInterpolationHasCells) {
+  const LightField field = testing::NoiseField();
+  RunChoices choices;
+  choices.film.mode = RenderMode::kHybrid;
+  const auto inputs = [&](RayInterpolation interpolation) {
+    choices.film.rebin.interpolation = interpolation;
+    return InputsOfRays(IdentityOf(field), field.encoding, choices);
+  };
+  const RunInputs cells = inputs(RayInterpolation::kCells),
+                  pixels = inputs(RayInterpolation::kPixels);
+  RunInputs before = cells;
+  ASSERT_EQ(std::erase_if(before, [](const auto& input) { return input.first == "interpolation"; }),
+            1u);
+  EXPECT_EQ(FirstDifference(before, cells), std::nullopt);
+  EXPECT_EQ(FirstDifference(cells, before), std::nullopt);
+  const auto difference = FirstDifference(before, pixels);
+  ASSERT_TRUE(difference);
+  EXPECT_EQ(difference->Text("was made with", "this call has"),
+            "was made with interpolation cells, this call has pixels");
+  EXPECT_EQ(FirstDifference(pixels, cells)->Text("was made with", "this call has"),
+            "was made with interpolation pixels, this call has cells");
+  choices.film.mode = RenderMode::kCollect;
+  EXPECT_EQ(FirstDifference(before, inputs(RayInterpolation::kPixels))->key, "mode");
+}
+
 TEST(RunInputs, TheFolderMayMove) {
   LightField field = testing::NoiseField();
   const RunInputs before = InputsOfRays(IdentityOf(field), field.encoding, {});

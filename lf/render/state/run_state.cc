@@ -14,18 +14,18 @@
 #include "lf/core/parse_number.h"
 #include "lf/core/temporary_file.h"
 #include "lf/pixels/files/whole_file.h"
+#include "lf/rebinning/kept_pixels_file.h"
 #include "lf/rebinning/ray_map_file.h"
 #include "lf/render/state/other_films.h"
+#include "lf/render/state/state_entries.h"
 
 namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::string_view kProgress = "progress.";
-constexpr const char* kRanksDone = "progress.ranks_done";
 constexpr const char* kNoise = "progress.noise";
 constexpr const char* kRaysExtension = ".rays";
-constexpr const char* kRaysFrames = "rays.frames";
+constexpr const char* kKeptExtension = ".pixels";
 constexpr const char* kVirtual = "progress.virtual_lf_images";
 
 // Returns N if the file name is "frame_N.EXTENSION"; nullopt for other names.
@@ -40,9 +40,11 @@ std::optional<FrameId> FrameOf(const fs::path& path) {
 // Advice for a damaged file: only the work that it holds is done again if it is removed.
 constexpr const char* kPlateAdvice = "remove the file to render its frame again";
 constexpr const char* kRaysAdvice = "remove the file to rebin its rays again";
+constexpr const char* kKeptAdvice = "remove the file to read its pixels again";
 
-Error WithAdvice(const Error& error, const char* advice) {
-  return {error.kind, fmt::format("{}; {}", error.message, advice)};
+// True for the files that the frames of a pass share: rebinned rays and kept pixels.
+bool IsOfPass(const fs::path& path) {
+  return path.extension() == kRaysExtension || path.extension() == kKeptExtension;
 }
 
 std::vector<fs::path> FilesOf(const fs::path& folder) {
@@ -60,7 +62,7 @@ std::vector<fs::path> FilesOf(const fs::path& folder) {
 //              stay
 void RemoveTemporaryFiles(const fs::path& folder, const std::vector<FrameId>& frames,
                           bool is_shared) {
-  constexpr const char* kOurs[] = {".run.", ".report.", ".contact_sheet.", ".rays_"};
+  constexpr const char* kOurs[] = {".run.", ".report.", ".contact_sheet.", ".rays_", ".kept_"};
   std::error_code ignored;
   for (const fs::path& path : FilesOf(folder)) {
     const std::string name = path.filename().string();
@@ -77,25 +79,6 @@ void RemoveTemporaryFiles(const fs::path& folder, const std::vector<FrameId>& fr
 
 fs::path PartialFolder(const RunStateOptions& options) {
   return options.folder / "partial" / NameOfState(options.package, options.shard);
-}
-
-template <class Number>
-Result<void> NumberOf(const fs::path& path, const PlateEntries& entries, const char* key,
-                      const char* advice, Number* value) {
-  const std::string* text = FindEntry(entries, key);
-  const std::string number = text == nullptr ? "(none)" : *text;
-  if (const auto whole = ParseWhole<Number>(number)) {
-    *value = *whole;
-    return {};
-  }
-  return WithAdvice(InputError(fmt::format("{}: its entry {} is \"{}\", expected a whole number",
-                                           path.string(), key, number)),
-                    advice);
-}
-
-RunInputs Joined(RunInputs a, const RunInputs& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
 }
 
 }  // namespace
@@ -158,7 +141,7 @@ Result<void> RunState::FindEarlierRun() {
     const std::optional<FrameId> frame = FrameOf(file);
     if (frame && file.extension() == ".plate") plates_.insert(*frame);
     if (frame && file.extension() == ".json") records_.insert(*frame);
-    has_rays_ = has_rays_ || file.extension() == kRaysExtension;
+    has_rays_ = has_rays_ || IsOfPass(file);
   }
   LF_RETURN_IF_ERROR(CheckOtherPackages());
   if (options_.resume) {
@@ -244,8 +227,7 @@ Result<void> RunState::FindOtherFilms() {
 void RunState::RemoveAll() {
   std::error_code ignored;
   for (const fs::path& file : FilesOf(partial_))
-    if (FrameOf(file) || file.filename() == "run.json" || file.extension() == kRaysExtension)
-      fs::remove(file, ignored);
+    if (FrameOf(file) || file.filename() == "run.json" || IsOfPass(file)) fs::remove(file, ignored);
   has_rays_ = false;
   plates_.clear();
   records_.clear();
@@ -311,7 +293,7 @@ Result<void> RunState::CheckPlate(FrameId frame) const {
   if (!reader) return WithAdvice(reader.error(), kPlateAdvice);
   RunInputs recorded;
   for (const auto& entry : reader->entries())
-    if (!entry.first.starts_with(kProgress)) recorded.push_back(entry);
+    if (!entry.first.starts_with(kProgressKeys)) recorded.push_back(entry);
   return Check(PlatePath(frame).string(), frame, recorded, false);
 }
 
@@ -411,19 +393,11 @@ Result<std::optional<RunState::Rays>> RunState::LoadRays(FrameId first, size_t s
                                                          const std::string& frames,
                                                          size_t max_cells, ThreadPool& pool) const {
   const fs::path path = RaysPath(first, section);
-  if (!options_.resume || !fs::exists(path)) return std::optional<Rays>();
-  const auto check = [&](const PlateEntries& entries) -> Result<void> {
-    RunInputs recorded, wanted = options_.rays;
-    wanted.emplace_back(kRaysFrames, frames);
-    for (const auto& entry : entries)
-      if (!entry.first.starts_with(kProgress)) recorded.push_back(entry);
-    if (const auto difference = FirstDifference(recorded, wanted))
-      return UsageError(
-          fmt::format("{}: {}, so that {{resume}} cannot continue; give the same inputs and "
-                      "options, or another "
-                      "{{output}}, or start again with {{overwrite}} instead of {{resume}}",
-                      path.string(), difference->Text("was made with", "this call has")));
-    return {};
+  if (!options_.resume) return std::optional<Rays>();
+  LF_RETURN_IF_ERROR(CheckNoneIsOther(partial_, kKeptExtension, "interpolation pixels", "cells"));
+  if (!fs::exists(path)) return std::optional<Rays>();
+  const auto check = [&](const PlateEntries& entries) {
+    return CheckEntriesOfPass(path, entries, options_.rays, frames);
   };
   Result<RaysFile> file = ReadRays(path, max_cells, pool, check);
   if (!file && file.error().kind == ErrorKind::kUsage) return file.error();
@@ -435,18 +409,54 @@ Result<std::optional<RunState::Rays>> RunState::LoadRays(FrameId first, size_t s
 
 Result<void> RunState::SaveRays(FrameId first, size_t section, const std::string& frames,
                                 const RayMap& map, uint32_t ranks_done, ThreadPool& pool) {
-  PlateEntries text = options_.rays;
-  text.emplace_back(kRaysFrames, frames);
-  text.emplace_back(kRanksDone, fmt::format("{}", ranks_done));
-  LF_RETURN_IF_ERROR(WriteRays(RaysPath(first, section), text, map, pool));
+  LF_RETURN_IF_ERROR(WriteRays(RaysPath(first, section),
+                               EntriesOfPass(options_.rays, frames, ranks_done), map, pool));
   has_rays_ = true;
+  return {};
+}
+
+fs::path RunState::KeptPath(FrameId first) const {
+  return partial_ / fmt::format("kept_{:04}{}", first.value, kKeptExtension);
+}
+
+Result<std::optional<RunState::Kept>> RunState::LoadKept(FrameId first, const std::string& frames,
+                                                         size_t max_pixels,
+                                                         ThreadPool& pool) const {
+  const fs::path path = KeptPath(first);
+  if (!options_.resume) return std::optional<Kept>();
+  LF_RETURN_IF_ERROR(CheckNoneIsOther(partial_, kRaysExtension, "interpolation cells", "pixels"));
+  if (!fs::exists(path)) return std::optional<Kept>();
+  const auto check = [&](const PlateEntries& entries) {
+    return CheckEntriesOfPass(path, entries, options_.rays, frames);
+  };
+  Result<KeptFile> file = ReadKept(path, max_pixels, pool, check);
+  if (!file && file.error().kind == ErrorKind::kUsage) return file.error();
+  if (!file) return WithAdvice(file.error(), kKeptAdvice);
+  Kept kept{std::move(file->pixels), 0};
+  LF_RETURN_IF_ERROR(NumberOf(path, file->entries, kRanksDone, kKeptAdvice, &kept.ranks_done));
+  return std::optional<Kept>(std::move(kept));
+}
+
+Result<void> RunState::SaveKept(FrameId first, const std::string& frames, const KeptPixels& pixels,
+                                uint32_t ranks_done, ThreadPool& pool) {
+  LF_RETURN_IF_ERROR(
+      WriteKept(KeptPath(first), EntriesOfPass(options_.rays, frames, ranks_done), pixels, pool));
+  has_rays_ = true;
+  return {};
+}
+
+Result<void> RunState::CheckNoRays() const {
+  if (!options_.resume) return {};
+  for (const char* const extension : {kRaysExtension, kKeptExtension})
+    LF_RETURN_IF_ERROR(
+        CheckNoneIsOther(partial_, extension, "mode rebin or hybrid", "mode collect"));
   return {};
 }
 
 void RunState::RemoveRays() {
   std::error_code ignored;
   for (const fs::path& file : FilesOf(partial_))
-    if (file.extension() == kRaysExtension) fs::remove(file, ignored);
+    if (IsOfPass(file)) fs::remove(file, ignored);
   has_rays_ = false;
 }
 

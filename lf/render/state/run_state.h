@@ -6,6 +6,7 @@
 //   lock              locked by the process that renders
 //   run.json          times so far and skipped LF images
 //   rays_0001_1.rays  rebinned rays of section 1 of the pass whose first frame is 1
+//   kept_0001.pixels  kept LF pixels of the pass whose first frame is 1
 //   frame_0001.plate  the plate of an unfinished frame, its inputs and its progress
 //   frame_0001.exr    a picture of the unfinished frame, about as recent as its plate
 //   frame_0002.json   the report and the inputs of a finished frame
@@ -31,6 +32,7 @@
 #include "lf/film/develop/frame_file.h"
 #include "lf/film/plate/plate_file.h"
 #include "lf/film/plate/sensor_plate.h"
+#include "lf/rebinning/kept_pixels.h"
 #include "lf/rebinning/ray_map.h"
 #include "lf/render/collect/collect.h"
 #include "lf/render/collect/noise_moments.h"
@@ -76,7 +78,7 @@ class RunState {
   const std::map<FrameId, FrameReport>& finished() const { return finished_; }
   // Totals of earlier runs, such as times and skipped LF images; without frames.
   const RenderReport& earlier() const { return earlier_; }
-  // True if the state has plates of unfinished frames, or rebinned rays.
+  // True if the state has plates of unfinished frames, rebinned rays or kept pixels.
   bool HasPlates() const { return !plates_.empty() || has_rays_; }
   bool HasPlate(FrameId frame) const { return plates_.contains(frame); }
 
@@ -114,7 +116,19 @@ class RunState {
                                        size_t max_cells, ThreadPool& pool) const;
   Result<void> SaveRays(FrameId first, size_t section, const std::string& frames, const RayMap& map,
                         uint32_t ranks_done, ThreadPool& pool);
-  void RemoveRays();  // removes the rebinned rays of all passes
+  // LoadKept() and SaveKept() read and write the kept pixels of a pass. Parameters and errors are
+  // those of LoadRays() and SaveRays(), for a file with more than max_pixels pixels.
+  struct Kept {
+    KeptPixels pixels;
+    uint32_t ranks_done = 0;
+  };
+  Result<std::optional<Kept>> LoadKept(FrameId first, const std::string& frames, size_t max_pixels,
+                                       ThreadPool& pool) const;
+  Result<void> SaveKept(FrameId first, const std::string& frames, const KeptPixels& pixels,
+                        uint32_t ranks_done, ThreadPool& pool);
+  // kUsage: the run was begun in a mode that keeps rays, and is resumed in one that does not.
+  Result<void> CheckNoRays() const;
+  void RemoveRays();  // removes the rebinned rays and the kept pixels of all passes
 
   Result<void> SaveTotals(const RenderReport& totals);
   // Records that a frame is finished, and removes its plate and picture from the state. Must be
@@ -156,6 +170,7 @@ class RunState {
   std::filesystem::path PlatePath(FrameId frame) const;
   std::filesystem::path RecordPath(FrameId frame) const;
   std::filesystem::path RaysPath(FrameId first, size_t section) const;
+  std::filesystem::path KeptPath(FrameId first) const;
   std::filesystem::path ReportPath() const;
   std::string Name() const;
 
@@ -166,7 +181,7 @@ class RunState {
   std::mutex plates_mutex_;    // held while SavePlate() changes plates_
   std::set<FrameId> plates_;   // unfinished frames with a plate in the state
   std::set<FrameId> records_;  // finished frames with a report in the state
-  bool has_rays_ = false;
+  bool has_rays_ = false;      // true if the state has rebinned rays or kept pixels
   std::map<FrameId, FrameReport> finished_;
   RenderReport earlier_;
   std::optional<RenderReport> staying_;  // frames of this film that the render does not write

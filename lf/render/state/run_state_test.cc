@@ -64,6 +64,23 @@ class RunStateTest : public ::testing::Test {
     ASSERT_TRUE(state->SaveRays(FrameId{1}, 0, "1-3", map, 128, pool_));
   }
 
+  // Saves one kept pixel of LF image 4, for a pass of frames 1 to 3.
+  void AddKept() {
+    KeptImage image;
+    image.id = LfImageId{4};
+    image.width_px = 3;
+    image.height_px = 2;
+    image.rect = {1, 0, 3, 2};
+    image.places = {3};
+    image.values = {1000, 2000, 3000};
+    KeptPixels pixels(1000);
+    pixels.Add({image}, pool_);
+    const std::unique_ptr<RunState> state = *Open(true);
+    ASSERT_TRUE(state->SaveKept(FrameId{1}, "1-3", pixels, 64, pool_));
+    EXPECT_TRUE(state->HasPlates());
+  }
+  fs::path KeptFile() const { return folder_ / "partial" / "kept_0001.pixels"; }
+
   fs::path folder_;
   CameraPath path_;
   const LightField field_ = testing::NoiseField();
@@ -236,6 +253,7 @@ TEST_F(RunStateTest, WhatAKilledProcessLeftIsCleared) {
   std::ofstream(partial / ".frame_0002.123-00ab12cd.tmp.plate") << "half";
   std::ofstream(folder_ / ".frame_0003.123-00ab12cd.tmp.exr") << "half";
   std::ofstream(folder_ / ".hidden.tmp.txt") << "the user's";
+  std::ofstream(partial / ".kept_0001.123-00ab12cd.tmp.pixels") << "half";
   // Another process renders frame 4, of another package, into the same folder.
   std::ofstream(folder_ / ".frame_0004.456-00ab12cd.tmp.exr") << "half";
   // A process was killed after it wrote the record of frame 3, and before it removed the plate of
@@ -244,6 +262,7 @@ TEST_F(RunStateTest, WhatAKilledProcessLeftIsCleared) {
   ASSERT_TRUE(Open(true));
   EXPECT_FALSE(fs::exists(partial / ".frame_0002.123-00ab12cd.tmp.plate"));
   EXPECT_FALSE(fs::exists(folder_ / ".frame_0003.123-00ab12cd.tmp.exr"));
+  EXPECT_FALSE(fs::exists(partial / ".kept_0001.123-00ab12cd.tmp.pixels"));
   EXPECT_TRUE(fs::exists(folder_ / ".hidden.tmp.txt"));
   EXPECT_TRUE(fs::exists(folder_ / ".frame_0004.456-00ab12cd.tmp.exr"));
   EXPECT_FALSE(fs::exists(partial / "frame_0003.plate"));
@@ -267,10 +286,92 @@ TEST_F(RunStateTest, RebinnedRaysAreThoseOfTheSameFrames) {
   EXPECT_FALSE((*state)->LoadRays(FrameId{1}, 1, "1-3", 1000, pool_)->has_value());
 }
 
+TEST_F(RunStateTest, KeptPixelsAreThoseOfTheSameFrames) {
+  AddKept();
+  const auto state = Open(true);
+  ASSERT_TRUE(state) << state.error().message;
+  const auto kept = (*state)->LoadKept(FrameId{1}, "1-3", 1000, pool_);
+  ASSERT_TRUE(kept) << kept.error().message;
+  ASSERT_TRUE(kept->has_value());
+  EXPECT_EQ((*kept)->ranks_done, 64u);
+  ASSERT_EQ((*kept)->pixels.size(), 1u);
+  EXPECT_EQ((*kept)->pixels.images().at(LfImageId{4}).values,
+            (std::vector<uint16_t>{1000, 2000, 3000}));
+  const auto others = (*state)->LoadKept(FrameId{1}, "1", 1000, pool_);
+  ASSERT_FALSE(others);
+  EXPECT_EQ(others.error().kind, ErrorKind::kUsage);
+  EXPECT_NE(others.error().message.find("rays.frames 1-3, this call has 1"), std::string::npos)
+      << others.error().message;
+  EXPECT_FALSE((*state)->LoadKept(FrameId{2}, "1-3", 1000, pool_)->has_value());
+}
+
+TEST_F(RunStateTest, KeptPixelsOfOtherInputsAreRefused) {
+  AddKept();
+  const auto state = Open(true, false, 9);
+  ASSERT_TRUE(state) << state.error().message;
+  const auto kept = (*state)->LoadKept(FrameId{1}, "1-3", 1000, pool_);
+  ASSERT_FALSE(kept);
+  EXPECT_EQ(kept.error().kind, ErrorKind::kUsage);
+  EXPECT_NE(kept.error().message.find("kept_0001.pixels: was made with seed 0, this call has 9"),
+            std::string::npos)
+      << kept.error().message;
+}
+
+TEST_F(RunStateTest, KeptPixelsAreReadOnlyToResume) {
+  {
+    const std::unique_ptr<RunState> fresh = *Open(false);
+    ASSERT_TRUE(fresh->SaveKept(FrameId{1}, "1-3", KeptPixels(1), 5, pool_));
+    EXPECT_FALSE(fresh->LoadKept(FrameId{1}, "1-3", 1000, pool_)->has_value());
+  }
+  AddKept();
+  EXPECT_EQ(Open(false).error().kind, ErrorKind::kUsage);
+  EXPECT_TRUE((*Open(true))->HasPlates());
+  EXPECT_TRUE(fs::exists(KeptFile()));
+  const auto state = Open(false, true);
+  ASSERT_TRUE(state) << state.error().message;
+  EXPECT_FALSE((*state)->HasPlates());
+  EXPECT_FALSE(fs::exists(KeptFile()));
+}
+
+TEST_F(RunStateTest, RaysAndKeptPixelsAreRemovedTogether) {
+  LeaveUnfinished();
+  AddRays();
+  AddKept();
+  const fs::path partial = folder_ / "partial";
+  EXPECT_TRUE(fs::exists(partial / "rays_0001_1.rays"));
+  {
+    // A run with one kind is not continued with the other.
+    const std::unique_ptr<RunState> state = *Open(true);
+    const auto kept = state->LoadKept(FrameId{1}, "1-3", 1000, pool_);
+    ASSERT_FALSE(kept);
+    EXPECT_EQ(kept.error().kind, ErrorKind::kUsage);
+    EXPECT_NE(kept.error().message.find("interpolation cells, this call has pixels"),
+              std::string::npos);
+    const auto rays = state->LoadRays(FrameId{1}, 0, "1-3", 1000, pool_);
+    ASSERT_FALSE(rays);
+    EXPECT_NE(rays.error().message.find("interpolation pixels, this call has cells"),
+              std::string::npos);
+  }
+  {
+    const std::unique_ptr<RunState> state = *Open(true);
+    state->RemoveRays();
+    EXPECT_TRUE(state->HasPlates());  // the plate of frame 2
+  }
+  EXPECT_FALSE(fs::exists(partial / "rays_0001_1.rays"));
+  EXPECT_FALSE(fs::exists(KeptFile()));
+  EXPECT_TRUE(fs::exists(partial / "frame_0002.plate"));
+  fs::remove(partial / "frame_0002.plate");
+  AddKept();
+  const std::unique_ptr<RunState> state = *Open(true);
+  EXPECT_TRUE(state->HasPlates());
+  state->RemoveRays();
+  EXPECT_FALSE(state->HasPlates());
+}
+
 TEST_F(RunStateTest, AdviceIsAboutTheWorkThatTheFileHolds) {
   LeaveUnfinished();
   AddRays();
-  const auto state = Open(true);
+  auto state = Open(true);
   ASSERT_TRUE(state) << state.error().message;
   SensorPlate small(40, 30);
   const auto other = (*state)->LoadPlate(FrameId{2}, &small);
@@ -284,6 +385,24 @@ TEST_F(RunStateTest, AdviceIsAboutTheWorkThatTheFileHolds) {
       "contains 1 cells, but {max_rays} and {memory} allow only 0, because they are smaller than "
       "when the file was written; remove the file to rebin its rays again"))
       << too_many.error().message;
+  (*state)->RemoveRays();
+  state->reset();
+  AddKept();
+  state = Open(true);
+  ASSERT_TRUE(state) << state.error().message;
+  const auto many_pixels = (*state)->LoadKept(FrameId{1}, "1-3", 0, pool_);
+  ASSERT_FALSE(many_pixels);
+  EXPECT_TRUE(many_pixels.error().message.ends_with(
+      "contains 1 pixels, but {max_rays} and {memory} allow only 0, because they are smaller than "
+      "when the file was written; remove the file to read its pixels again"))
+      << many_pixels.error().message;
+  fs::resize_file(KeptFile(), fs::file_size(KeptFile()) - 1);
+  const auto cut = (*state)->LoadKept(FrameId{1}, "1-3", 1000, pool_);
+  ASSERT_FALSE(cut);
+  EXPECT_EQ(cut.error().kind, ErrorKind::kInput);
+  EXPECT_NE(cut.error().message.find("is truncated"), std::string::npos) << cut.error().message;
+  EXPECT_TRUE(cut.error().message.ends_with("; remove the file to read its pixels again"))
+      << cut.error().message;
 }
 
 TEST_F(RunStateTest, OneAtATime) {
