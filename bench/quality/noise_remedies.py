@@ -32,7 +32,7 @@ from lens_weights import cv2, np
 from quality import results
 from rebinning_quality import ground_truth_cases
 
-FULL = "--mode rebin --estimator bilinear --filter prefiltered --lens-weights auto"
+FULL = "--mode rebin --interpolation cells --estimator bilinear --filter prefiltered --lens-weights auto"
 EDGES = FULL + " --kept edges"
 WIDE = EDGES + " --r-st {pitch} --r-uv {pixel}"
 # name: options of lfrenderer. Placeholders of cell widths: {pitch} is the distance between neighbouring LF cameras,

@@ -89,13 +89,14 @@ def main():
         hybrid = capture.frame(whole, small, *none, "--mode", "hybrid")
         side_by_side(folder / "rebinning_small_lens.jpg",
                      [collected, picture(hybrid), picture(capture.truth(small))])
+        cells = ("--mode", "rebin", "--interpolation", "cells")
         near = capture.path(12, 0.45)
         side_by_side(folder / "rebinning_few_images.jpg",
                      [picture(capture.frame(capture.thinned, near, *none)),
-                      picture(capture.frame(capture.thinned, near, "--mode", "rebin")),
+                      picture(capture.frame(capture.thinned, near, *cells)),
                       picture(capture.truth(near))])
         wide = capture.path(5, 0.8)
-        rebin = lambda *options: picture(capture.frame(whole, wide, "--mode", "rebin", *options))
+        rebin = lambda *options: picture(capture.frame(whole, wide, *cells, *options))
         edges = ("--kept", "edges")
         side_by_side(folder / "rebinning_kept.jpg",
                      [rebin(), rebin(*edges), rebin(*edges, "--xi", "0.2")])

@@ -86,7 +86,7 @@ class LightChains(World):
         return self.film(light_field, self.path("plain", flaws))
 
     def see_rebinned_film(self, light_field, flaws):
-        return self.film(light_field, self.path("plain", flaws), options=("--mode", "rebin", "--max-rays", 100000))
+        return self.film(light_field, self.path("plain", flaws), options=("--mode", "rebin", "--max-rays", 2000000))
 
     def see_packages(self, light_field, flaws):
         packages = self.make("lfpreprocessor", light_field, self.path("plain", flaws), "--packages", 2,

@@ -306,17 +306,18 @@ class Matrix(World):
         numbers = frames_of(cell.field)
         frames = ",".join(map(str, begun)) or f"{numbers[0]}-{numbers[-1]}"
         if cell.cut == "lfsubmit":
-            if not begun:  # rebinned rays belong to all frames of their package
+            if not begun:  # rebinned rays and kept pixels belong to all frames of their package
                 job = json.loads((out / "cluster" / "job.json").read_text())
                 frames = ",".join(package["frames"] for package in job["packages"]
-                                  if any((out / "partial" / package["name"]).glob("*.rays")))
+                                  if holds_any(out / "partial" / package["name"], "*.rays", "*.pixels"))
             exit_code, last = run([self.program("lfsubmit"), "--finish", out, frames])
             if exit_code == 0:
                 exit_code, last = run(step.resume)
         else:
             exit_code, last = run([*step.resume, "--finish", frames])
         rendered = self.look_at(cell, out, exit_code, last)
-        for frame in set(rendered.early) & set(pictures):
+        # With `rebin`, a picture is collected when it is written, and may be older than the state.
+        for frame in set(rendered.early) & set(pictures) if cell.mode != "rebin" else ():
             if rendered.early_pixels[frame] != pictures[frame]:
                 raise Difference(f"frame {frame}, finished early, is not the picture that was left")
         return rendered
@@ -401,10 +402,10 @@ class Matrix(World):
             raise Difference(f"skipped LF images {rendered.skipped}, expected {plain.skipped}")
 
     def check_early(self, cell, plain_cell, rendered):
-        """Compares frames that were finished early with renders of the LF images that they name. Rebinned rays depend
-        on the course of a render, so they are skipped, as are rectangles that are encoded with loss, and densified
-        stores, whose virtual LF images are made of many files each."""
-        if render_mode(cell.mode) != "collect" or is_of_packages(plain_cell.input):
+        """Compares frames that were finished early with renders of the LF images that they name. Cells and the gaps
+        of hybrids depend on all LF images, so they are skipped, as are rectangles that are encoded with loss, and
+        densified stores, whose virtual LF images are made of many files each."""
+        if (render_mode(cell.mode) != "collect" and cell.mode != "rebin") or is_of_packages(plain_cell.input):
             return
         if cell.input == "densified store":
             return
@@ -442,5 +443,5 @@ def is_at_work(out):
 
 
 def has_state(out):
-    """Returns True if an unfinished frame, or rebinned rays, are on the disk."""
-    return holds_any(out, "partial/**/frame_*.plate", "partial/**/*.rays")
+    """Returns True if an unfinished frame, rebinned rays or kept pixels are on the disk."""
+    return holds_any(out, "partial/**/frame_*.plate", "partial/**/*.rays", "partial/**/*.pixels")

@@ -18,7 +18,7 @@ from small_field import HEIGHT, WIDTH
 FRAMES, PACKAGES = 9, 3
 SIDE = 13  # 169 LF cameras: rules are tested after 64 and 128 of them
 MOST_IMAGES = 40
-MOST_RAYS = 200000  # limit for rebin and hybrid
+MOST_PIXELS, MOST_CELLS = 2000000, 200000  # limits for rebin and hybrid: all that a film needs fits
 MODES = {
     "nearest": ["--estimator", "nearest"],
     "nearest none": ["--estimator", "nearest", "--lens-weights", "none"],
@@ -30,9 +30,10 @@ MODES = {
     "unguarded": ["--no-guard"],
     "compositing": ["--colour-space", "acescg", "--frame-alpha", "--z"],
     "few channels": ["--channels", "rgba", "--exr-compression", "zips"],
-    "rebin": ["--mode", "rebin", "--max-rays", MOST_RAYS],
-    "hybrid": ["--mode", "hybrid", "--max-rays", MOST_RAYS],
-    "hybrid none": ["--mode", "hybrid", "--lens-weights", "none", "--max-rays", MOST_RAYS],
+    "rebin": ["--mode", "rebin", "--max-rays", MOST_PIXELS],
+    "rebin cells": ["--mode", "rebin", "--interpolation", "cells", "--max-rays", MOST_CELLS],
+    "hybrid": ["--mode", "hybrid", "--max-rays", MOST_PIXELS],
+    "hybrid none": ["--mode", "hybrid", "--lens-weights", "none", "--max-rays", MOST_PIXELS],
 }
 OF_FILES = ("compositing", "few channels")  # modes whose options change the files of frames, not their rays
 # The pictures of the LF images do not fit one another, so that the depths are arbitrary; they are the same each time.
@@ -283,7 +284,7 @@ class World:
         options = MODES[mode] if mode != "default" else []
         return [word for name, value in zip(options[::2], options[1::2]) for word in (name, value)
                 if name in ("--estimator", "--lens-weights") or
-                (name == "--mode" and self.knows("lfpreprocessor", "--mode"))]
+                (name in ("--mode", "--interpolation") and self.knows("lfpreprocessor", name))]
 
     @once
     def places_of(self, field):

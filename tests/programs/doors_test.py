@@ -30,17 +30,19 @@ FILMS = {
                 "max_angle_deg": 60, "order": "round-robin", "seed": 5, "stop_when": "noise<=0.25",
                 "back_end": "reference"},
     "counted": {"estimator": "nearest", "smooth_below": 3},
-    "hybrid": {"mode": "hybrid", "kept": "edges", "max_rays": 5000, "average_others": False, "preview": "on",
+    "hybrid": {"mode": "hybrid", "interpolation": "cells", "kept": "edges", "max_rays": 5000,
+               "average_others": False, "preview": "on",
                "alpha": 3.5, "beta": 0.01, "xi": 0.5, "edge_sigma": 1.5, "probability_sigma": 0.5, "colour_sigma": 0.25,
                "sigma_st": 0.7, "sigma_uv": 0.8, "lens_points": 9, "lens_sets": 2, "r_st": 0.004, "r_uv": 0.003,
                "slab_position": (0, 0, 0), "slab_forward": (0, 0.125, -1), "slab_distance": 0.75,
                "back_end": "reference", "nearest": 5, "coverage_cells": 8},
     "slabs": {"mode": "hybrid", "max_rays": 5000, "reparameterise": False},
+    "pixels": {"mode": "hybrid", "max_rays": 5000, "kept": "edges", "interpolation": "pixels"},
 }
 # A guard is recorded only for densified light fields. Python has no `require`, which only decides an exit code.
 NOT_RECORDED = {"guard": False}
 IN_PACKAGES = ("max_images", "max_angle_deg", "order", "seed")
-OF_PREPROCESSOR = (*IN_PACKAGES, "mode", "lens_weights", "estimator")
+OF_PREPROCESSOR = (*IN_PACKAGES, "mode", "interpolation", "lens_weights", "estimator")
 
 OF_PYTHON = """
 import json, sys

@@ -150,8 +150,8 @@ class FocalSurfaceTest(StillLifeCase):
     def test_what_knows_planes_only_refuses_a_surface(self):
         path = self.path("refused", self.depths())
         for mode in ("rebin", "hybrid"):
-            self.fails(2, ["focal surface", "--mode collect"], RENDERER, self.field, path, "-o", self.folder / "f",
-                       "--mode", mode)
+            self.fails(2, ["focal surface", "--interpolation pixels", "--mode collect"], RENDERER, self.field, path,
+                       "-o", self.folder / "f", "--mode", mode, "--interpolation", "cells")
         self.fails(3, ["focus.surface", "lfrenderer"], FOCUS, "stack", self.field, path, "-o", self.folder / "f.exr",
                    "--planes", 3)
 

@@ -100,8 +100,8 @@ class LensShapesTest(StillLifeCase):
             self.fails(2, ["transmission", "--lens-weights none"], RENDERER, self.field, path, "-o",
                        self.folder / "frames", *options)
         for mode in ("rebin", "hybrid"):
-            self.fails(2, ["transmission", "--mode collect"], RENDERER, self.field, path, "-o",
-                       self.folder / "frames", "--mode", mode)
+            self.fails(2, ["transmission", "use --interpolation pixels or --mode collect"], RENDERER, self.field,
+                       path, "-o", self.folder / "frames", "--mode", mode, "--interpolation", "cells")
 
     def test_a_wrong_transmission_is_an_error(self):
         for name, text, words in (("missing", "nothing.png", ["nothing.png"]),
@@ -113,12 +113,12 @@ class LensShapesTest(StillLifeCase):
                 self.fails(3, ["lens.transmission", f"{name}.yaml:", *words], RENDERER, self.field, path, "-o",
                            self.folder / "frames")
 
-    def test_rebinned_rays_refuse_a_hood(self):
+    def test_cells_refuse_a_hood(self):
         path = self.path("hood", LENSES["cat's eye"][0])
         for mode in ("rebin", "hybrid"):
             for program, output in ((RENDERER, "frames"), (PREPROCESSOR, "packages")):
-                self.fails(2, ["hood", "--mode collect"], program, self.field, path, "-o", self.folder / output,
-                           "--mode", mode)
+                self.fails(2, ["hood", "use --interpolation pixels or --mode collect"], program, self.field, path,
+                           "-o", self.folder / output, "--mode", mode, "--interpolation", "cells")
 
     def test_packages_and_plates_keep_the_lens(self):
         for name in ("all", "cat's eye", "turned"):

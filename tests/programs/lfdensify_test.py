@@ -304,7 +304,7 @@ class DensifyTest(ProgramTestCase):
         self.synth()
         path = self.small_path()
         for words, options in ((["--shard", "lfdensify"], ["--shard", "1/2"]),
-                               (["--mode rebin", "--no-guard"], ["--mode", "rebin"]),
+                               (["--mode rebin", "--no-guard"], ["--mode", "rebin", "--interpolation", "cells"]),
                                (["samples>=N", "--no-guard"], ["--no-guard", "--stop-when", "samples>=1"])):
             self.fails(2, words, *self.call_of_film(path, "--densify", *options))
         self.fails(2, ["--densify", "lfdensify"], RENDERER, "a.lfp", "-o", self.folder / "film", "--densify")

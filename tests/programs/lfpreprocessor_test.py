@@ -330,7 +330,9 @@ class PackagesTest(ProgramTestCase):
     def test_a_forecast_is_the_sum_of_the_stages_of_its_mode(self):
         field, path = self.film()
         memory = {}
-        for mode, options in (("collect", []), ("rebin", ["--lens-weights", "none"]), ("hybrid", [])):
+        for mode, cells, options in (("collect", False, []), ("rebin", True, ["--lens-weights", "none"]),
+                                     ("hybrid", True, ["--interpolation", "cells"]), ("rebin", False, []),
+                                     ("hybrid", False, [])):
             plan = json.loads(self.succeeds(PREPROCESSOR, field, path, "--plan", "--json", "--packages", "1",
                                             "--mode", mode, *options))
             package = plan["packages"][0]
@@ -338,12 +340,13 @@ class PackagesTest(ProgramTestCase):
             self.assertAlmostEqual(package["cpu_s"], sum(stages.values()), 9)
             self.assertAlmostEqual(stages["load"], plan["rate"]["cpu_s_per_lf_image"] * package["lf_images"], 9)
             self.assertAlmostEqual(stages["finish"], plan["rate"]["cpu_s_per_frame"] * len(package["frames"]), 9)
-            self.assertEqual(stages["rebin"] + stages["complete"] > 0, mode != "collect", stages)
-            self.assertEqual(stages["collect"] > 0, mode != "rebin", stages)
-            memory[mode] = package["memory_bytes"]
+            self.assertEqual(stages["rebin"] + stages["complete"] > 0, cells, stages)
+            self.assertEqual(stages["collect"] > 0, (mode, cells) != ("rebin", True), stages)
+            memory[mode, cells] = package["memory_bytes"]
         # Rays take the memory that they fill, not the half of --memory that is theirs.
         self.assertLess(max(memory.values()), 400e6, memory)
-        self.assertGreater(memory["rebin"], 0)
+        self.assertGreater(memory["rebin", True], 0)
+        self.assertGreater(memory["rebin", False], memory["collect", False])
 
     def test_a_plan_tells_what_packages_will_be(self):
         field, path = self.film()

@@ -477,7 +477,8 @@ class LightFieldVideoTest(ProgramTestCase):
         film = [self.videos, path, "-o", self.folder / "a"]
         self.fails(2, ["moves through time", "--time"], RENDERER, *film, "--time", 0)
         self.fails(2, ["moves through time", "no light field video"], RENDERER, self.still, *film[1:])
-        self.fails(2, ["--mode hybrid", "move"], RENDERER, *film, "--mode", "hybrid")
+        self.fails(2, ["--mode hybrid", "move", "--interpolation pixels"], RENDERER, *film, "--mode", "hybrid",
+                   "--interpolation", "cells")
         self.fails(2, ["--densify"], RENDERER, *film, "--densify")
         self.fails(2, ["packages", "--shard"], PREPROCESSOR, *film)
         self.succeeds(PREPROCESSOR, self.videos, path, "--plan", "-q")

@@ -88,18 +88,27 @@ class NeededPixelsTest(ProgramTestCase):
 
     def test_every_mode_has_its_packages_and_stores(self):
         path = self.path(frames=12)
-        for mode, weights in (("collect", "none"), ("collect", "hat"), ("rebin", "auto"),
-                              ("hybrid", "none"), ("hybrid", "auto")):
-            with self.subTest(mode=mode, weights=weights):
-                options = ["--mode", mode, "--lens-weights", weights]
-                name = f"{mode}-{weights}"
-                render = options if mode != "rebin" else ["--mode", mode]
+        for mode, weights, way in (("collect", "none", "auto"), ("collect", "hat", "auto"), ("rebin", "auto", "auto"),
+                                   ("rebin", "auto", "cells"), ("hybrid", "none", "auto"), ("hybrid", "auto", "auto"),
+                                   ("hybrid", "auto", "cells")):
+            with self.subTest(mode=mode, weights=weights, way=way):
+                options = render = ["--mode", mode, "--lens-weights", weights, "--interpolation", way]
+                name = f"{mode}-{weights}-{way}"
                 expected = self.frames(f"whole-{name}", self.field, path, *render)
                 packages = self.packages(path, *options, name=f"packages-{name}")
                 self.assertEqual(self.frames(f"packages-of-{name}", *packages, *render), expected)
                 store = self.store(packages, name)
                 self.assertEqual(self.frames(f"store-of-{name}", *packages, "--lightfield", store,
                                              *render), expected)
+
+    def test_the_advised_render_has_the_interpolation_of_the_packages(self):
+        path = self.path(frames=6)
+        for mode, way in (("rebin", "cells"), ("rebin", "pixels"), ("hybrid", "cells")):
+            packages = self.packages(path, "--mode", mode, "--interpolation", way, name=f"{mode}-{way}")
+            told = self.call(COMPRESSOR, *packages, "--needed-pixels", "-o", self.folder / f"{mode}-{way}.lfs")
+            words = told.stdout + told.stderr
+            self.assertIn(f"--mode {mode}", words)
+            self.assertEqual("--interpolation cells" in words, way == "cells", words)
 
     def test_whole_images_serve_every_mode_and_estimator(self):
         path = self.path(frames=8)
@@ -137,8 +146,8 @@ class NeededPixelsTest(ProgramTestCase):
         store = self.store(packages, "neighbours")
         self.fails(3, ["lacks pixels that frame", "this packed store", "--mode",
                        "packages of these frames"],
-                   RENDERER, *packages, "--lightfield", store, "--mode", "rebin", "-o",
-                   self.folder / "none")
+                   RENDERER, *packages, "--lightfield", store, "--mode", "rebin", "--interpolation",
+                   "cells", "-o", self.folder / "none")
         self.assertFalse(list((self.folder / "none").glob("frame_*")))
         # lfpreprocessor writes no package if the packed store lacks pixels that the package needs.
         wide = self.folder / "wide.yaml"

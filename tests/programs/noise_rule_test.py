@@ -196,7 +196,7 @@ class NoiseRuleTest(ProgramTestCase):
             process = subprocess.Popen(
                 self.arguments(tag + "-cut", *rule, "--dump-every", "0.001s"),
                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-            while process.poll() is None and not list(partial.glob("rays_*")):
+            while process.poll() is None and not [*partial.glob("rays_*"), *partial.glob("kept_*")]:
                 time.sleep(0.001)
             process.kill()
             process.wait()
@@ -282,11 +282,11 @@ class NoiseRuleTest(ProgramTestCase):
             self.fails(2, ["--shard", option],
                        *self.arguments("no", "--shard", "1/2", option, "noise<=0.1"))
         few = self.call(*self.arguments("no", "--mode", "rebin", "--stop-when", "noise<=0.1",
-                                        "--memory", "200M", "--max-rays", "1000"))
+                                        "--memory", "72M", "--max-rays", "1000"))
         least = int(re.search(r"at least (\d+) MiB", few.stderr).group(1))
         self.fails(4, ["--mode rebin", "--memory", "--frames"], *self.arguments(
-            "no", "--mode", "rebin", "--stop-when", "noise<=0.1", "--memory", f"{least + 193}M",
-            "--max-rays", "1000"))
+            "no", "--mode", "rebin", "--stop-when", "noise<=0.1", "--memory", f"{least + 65}M",
+            "--max-rays", "30000"))
         self.render("inputs", "--stop-when", "noise<=0.045", "--frames", "1")
         self.fails(2, ["stop_when noise<=0.045, this call has noise<=0.05"], *self.arguments(
             "inputs", "--stop-when", "noise<=0.05", "--frames", "1-2", "--resume"))

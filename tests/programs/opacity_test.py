@@ -137,7 +137,7 @@ class OpacityTest(ProgramTestCase):
                       "--format", "exr-float")
         self.expect_same_bits(self.folder / "job")
         self.fails(2, ["--mode hybrid", "with an alpha channel", "--background black"], RENDERER, *files, "-o",
-                   self.folder / "refused", "--mode", "hybrid")
+                   self.folder / "refused", "--mode", "hybrid", "--interpolation", "cells")
 
     def test_killed_and_resumed_it_has_the_same_bits(self):
         slow = ["--estimator", "nearest", "--back-end", "reference", *NOTHING]
@@ -216,11 +216,11 @@ class OpacityTest(ProgramTestCase):
     def test_what_cannot_have_opacity_is_refused_with_a_way_out(self):
         refused = self.folder / "refused"
         for mode in ("rebin", "hybrid"):
-            words = [f"--mode {mode}", "with an alpha channel", "--mode collect", "--background black"]
-            self.fails(2, words, RENDERER, self.field, self.path, "-o", refused, "--mode", mode,
-                       *NOTHING)
-            self.fails(2, words, PREPROCESSOR, self.field, self.path, "-o", refused, "--mode", mode,
-                       *NOTHING)
+            words = [f"--mode {mode}", "with an alpha channel", "--interpolation pixels", "--mode collect",
+                     "--background black"]
+            cells = ["--mode", mode, "--interpolation", "cells"]
+            self.fails(2, words, RENDERER, self.field, self.path, "-o", refused, *cells, *NOTHING)
+            self.fails(2, words, PREPROCESSOR, self.field, self.path, "-o", refused, *cells, *NOTHING)
         mosaics = self.folder / "mosaics"
         self.succeeds(SYNTH, "chart", "-o", mosaics, "--bayer", "--calibration-only")
         self.fails(2, ["--background none", "mosaics", "no alpha"], RENDERER, mosaics, self.path, "-o",

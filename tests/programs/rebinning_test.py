@@ -6,6 +6,7 @@ and messages are correct.
 usage: rebinning_test.py LFRENDERER LFPREPROCESSOR
 """
 import hashlib
+import itertools
 import json
 import os
 import shutil
@@ -35,6 +36,11 @@ def report(folder):
     return json.loads((folder / "report.json").read_text())
 
 
+def rays_of(partial):
+    """Returns the files of rebinned rays and of kept pixels in the state of a render."""
+    return [*partial.glob("rays_*.rays"), *partial.glob("kept_*.pixels")]
+
+
 class RebinningTest(ProgramTestCase):
     def setUp(self):
         super().setUp()
@@ -56,7 +62,8 @@ class RebinningTest(ProgramTestCase):
         self.path(aperture=0.02)
         for mode in ("rebin", "hybrid"):
             for options in ([], ["--kept", "edges", "--seed", "3"], ["--max-rays", "20000"],
-                            ["--preview", "on", "--colour-sigma", "1"]):
+                            ["--preview", "on"], ["--preview", "on", "--colour-sigma", "1"],
+                            ["--interpolation", "cells", "--max-rays", "20000"]):
                 expected = self.render("one", "--mode", mode, "--threads", "1", *options)
                 self.assertEqual(len(expected), 3)
                 for threads in ("2", "3"):
@@ -74,16 +81,18 @@ class RebinningTest(ProgramTestCase):
     # Kills the render at any moment, also between writing two files of a state.
     def test_killed_and_resumed_the_same_bits(self):
         self.path(aperture=0.02, frames=6)
-        for mode in ("rebin", "hybrid"):
-            options = ["--mode", mode, "--dump-every", "0.001s", "--kept", "edges", "--preview",
-                       "on"]
+        for mode, way in itertools.product(("rebin", "hybrid"), ("pixels", "cells")):
+            options = ["--mode", mode, "--interpolation", way, "--dump-every", "0.001s", "--kept", "edges"]
+            if way == "cells":
+                options += ["--preview", "on"]
+            name = f"{mode}-{way}"
             start = time.monotonic()
-            expected = self.render("whole-" + mode, *options)
+            expected = self.render("whole-" + name, *options)
             whole_s = time.monotonic() - start
             kills = 0
             for attempt in range(12):
                 process = subprocess.Popen(
-                    list(map(str, self.command("cut-" + mode, *options, "--resume"))),
+                    list(map(str, self.command("cut-" + name, *options, "--resume"))),
                     stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
                 try:
                     process.wait(whole_s * (attempt + 2) / 14)
@@ -96,8 +105,8 @@ class RebinningTest(ProgramTestCase):
                 # A signal ends a program that cannot catch signals yet.
                 self.assertIn(process.returncode, (-signal.SIGKILL, -signal.SIGTERM, 5))
             self.assertGreater(kills, 2)
-            self.assertEqual(self.render("cut-" + mode, *options, "--resume"), expected)
-            self.assertFalse((self.folder / ("cut-" + mode) / "partial").exists())
+            self.assertEqual(self.render("cut-" + name, *options, "--resume"), expected)
+            self.assertFalse((self.folder / ("cut-" + name) / "partial").exists())
 
     def interrupted(self, out, delay_s, *options):
         """Returns pictures of the unfinished frames of a render that was interrupted `delay_s` after it wrote the
@@ -115,7 +124,7 @@ class RebinningTest(ProgramTestCase):
                 for path in partial.glob("frame_*.exr")}
 
     def test_frames_are_finished_early_with_the_rays_of_the_state(self):
-        self.path(aperture=0.006, frames=6)
+        self.path(aperture=0.05, frames=6)  # with several batches of LF images
         for mode in ("rebin", "hybrid"):
             options = ["--mode", mode, "--dump-every", "0.001s", "--threads", "1", "--back-end",
                        "reference" if mode == "hybrid" else "fast"]
@@ -147,26 +156,30 @@ class RebinningTest(ProgramTestCase):
 
     def test_resumed_with_other_choices_is_refused(self):
         self.path(aperture=0.02)
+        cells = ["--mode", "rebin", "--interpolation", "cells"]
         # A render that ends before it can be killed removes its rays.
         for attempt in range(30):
             out = f"out{attempt}"
             process = subprocess.Popen(
-                list(map(str, self.command(out, "--mode", "rebin", "--dump-every", "0.001s"))),
+                list(map(str, self.command(out, *cells, "--dump-every", "0.001s"))),
                 stderr=subprocess.PIPE)
             partial = self.folder / out / "partial"
-            wait_until(lambda: any(partial.glob("rays_*.rays")), process)
+            wait_until(lambda: any(rays_of(partial)), process)
             process.kill()
             process.communicate()
-            rays = list(partial.glob("rays_*.rays"))
+            rays = rays_of(partial)
             if rays:
                 break
         self.assertTrue(rays)
-        self.fails(2, ["--resume", "--overwrite"], *self.command(out, "--mode", "rebin"))
+        self.fails(2, ["--resume", "--overwrite"], *self.command(out, *cells))
         self.fails(2, ["sigma_st 0.5, this call has 0.7"],
-                   *self.command(out, "--mode", "rebin", "--resume", "--sigma-st", "0.7"))
+                   *self.command(out, *cells, "--resume", "--sigma-st", "0.7"))
+        self.fails(2, ["interpolation cells, this call has pixels"],
+                   *self.command(out, "--mode", "rebin", "--interpolation", "pixels", "--lens-weights", "none",
+                                 "--resume"))
         rays[0].write_bytes(rays[0].read_bytes()[:-5])
         self.fails(3, [rays[0].name, "remove the file"],
-                   *self.command(out, "--mode", "rebin", "--resume"))
+                   *self.command(out, *cells, "--resume"))
 
     # If LF cameras fill a lens, nothing is interpolated.
     def test_hybrid_of_a_full_lens_is_what_is_collected(self):
@@ -191,7 +204,7 @@ class RebinningTest(ProgramTestCase):
         self.assertNotEqual(words.returncode, 0)
         self.assertIn("no LF image contributes", words.stderr)
         for mode in ("rebin", "hybrid"):
-            self.render(mode, "--mode", mode, "--lens-weights", "none")
+            self.render(mode, "--mode", mode, "--lens-weights", "none", "--interpolation", "cells")
             for frame in report(self.folder / mode)["frames"]:
                 self.assertGreater(frame["interpolated_share"], 0.7)
 
@@ -207,6 +220,10 @@ class RebinningTest(ProgramTestCase):
         for options in (["--stop-when", "samples>=3"], ["--require", "samples>=3"],
                         ["--keep-plates"], ["--smooth-below", "2"]):
             self.fails(2, ["--mode rebin"], *self.command("no", "--mode", "rebin", *options))
+        self.fails(2, ["--interpolation pixels", "--sigma-st 0.7", "use --interpolation cells"],
+                   *self.command("no", "--mode", "rebin", "--interpolation", "pixels", "--sigma-st", "0.7"))
+        self.fails(2, ["--shard", "--kept edges", "leave out"],
+                   *self.command("no", "--mode", "rebin", "--kept", "edges", "--shard", "1/2"))
         self.fails(2, ["--lens-sets"], *self.command("no", "--mode", "rebin", "--reparameterise",
                                                      "off", "--lens-sets", "2"))
         self.fails(2, ["--max-rays 1", "1000"],
@@ -236,7 +253,7 @@ class RebinningTest(ProgramTestCase):
 
     def test_slabs_may_be_placed_and_left_as_they_are(self):
         self.path(aperture=0.02, frames=1)
-        plain = self.render("plain", "--mode", "rebin")
+        plain = self.render("plain", "--mode", "rebin", "--interpolation", "cells")
         for i, options in enumerate((["--reparameterise", "off"],
                                      ["--slab-distance", "1.5", "--reparameterise", "off"],
                                      ["--slab-position", "0", "0", "0.1"],

@@ -210,7 +210,9 @@ class ShardsTest(ProgramTestCase):
         self.assertEqual([frame["frame"] for frame in frames], [1, 2, 3])
 
     def test_what_shards_cannot_do_is_refused(self):
-        for options in (["--mode", "hybrid"], ["--stop-when", "samples>=3"], ["--keep-plates"],
+        for options in (["--mode", "hybrid"], ["--mode", "rebin", "--kept", "edges"],
+                        ["--mode", "rebin", "--interpolation", "cells"],
+                        ["--stop-when", "samples>=3"], ["--keep-plates"],
                         ["--video", self.folder / "a.mp4"], ["--require", "samples>=2"]):
             self.fails(2, ["--shard"], RENDERER, self.field, self.path, "-o", self.folder / "no",
                        "--shard", "1/2", *options)

@@ -176,12 +176,12 @@ class ShutterTest(StillLifeCase):
         self.fails(3, ["another camera path"], RENDERER, self.folder / "film-0/package-0000.lfp",
                    self.folder / "film-1/package-0001.lfp", "-o", self.folder / "mixed")
 
-    def test_rebinned_rays_and_guarded_frames_refuse_a_shutter(self):
+    def test_cells_and_guarded_frames_refuse_a_shutter(self):
         path = self.path("path")
         for mode in ("rebin", "hybrid"):
             for program, output in ((RENDERER, "frames"), (PREPROCESSOR, "packages")):
-                self.fails(2, [f"--mode {mode}", "shutter", "--mode collect"], program, self.field, path, "-o",
-                           self.folder / output, "--mode", mode)
+                self.fails(2, [f"--mode {mode}", "shutter", "use --interpolation pixels or --mode collect"], program,
+                           self.field, path, "-o", self.folder / output, "--mode", mode, "--interpolation", "cells")
         self.fails(2, ["densified", "shutter", "--no-guard"], RENDERER, self.field, path, "-o", self.folder / "frames",
                    "--densify")
 
