@@ -71,7 +71,10 @@ class Frame:
 
     @property
     def interpolated(self) -> Optional[npt.NDArray[np.float32]]:
-        """Share of the light that is interpolated, of shape (height, width). None unless rays are rebinned."""
+        """Share of the light that is interpolated, of shape (height, width).
+
+        None unless `mode` is "hybrid", or "rebin" with `interpolation="cells"`.
+        """
         return self._core.interpolated
 
     @property

@@ -107,7 +107,7 @@ def test_the_working_directory_may_change(capture, path, tmp_path, monkeypatch):
 
 
 def test_frames_are_pickled(field, path, tmp_path):
-    for options in ({}, {"mode": "rebin"}, {"lens_weights": "none"}):
+    for options in ({}, {"mode": "rebin"}, {"mode": "rebin", "interpolation": "cells"}, {"lens_weights": "none"}):
         frame = lf.render(field, path, frames=[2], **options)
         again = pickle.loads(pickle.dumps(frame))
         assert np.array_equal(again.rgb, frame.rgb) and again.metadata == frame.metadata and repr(again) == repr(frame)
@@ -117,4 +117,9 @@ def test_frames_are_pickled(field, path, tmp_path):
 
 
 def test_a_rebinned_frame_says_so(field, path):
-    assert "rebinned" in repr(lf.render(field, path, mode="rebin"))
+    assert "of rebinned rays" in repr(lf.render(field, path, mode="rebin", interpolation="cells"))
+
+
+def test_a_frame_of_kept_pixels_is_a_collected_one(field, path):
+    kept, collected = lf.render(field, path, mode="rebin"), lf.render(field, path)
+    assert np.array_equal(kept.rgb, collected.rgb) and repr(kept) == repr(collected)

@@ -57,8 +57,7 @@ class FramePixels::Store : public LfImageStore {
 FramePixels::FramePixels(const ImageIndex& index, std::vector<KeptFrame> frames,
                          std::vector<SelectedImage> images, const SelectOptions& select,
                          const RebinSettings& options, ThreadPool& pool)
-    : index_(index),
-      light_field_(index.light_field()),
+    : light_field_(index.light_field()),
       frames_(std::move(frames)),
       images_(std::move(images)),
       select_(select),
@@ -118,6 +117,7 @@ PixelRect FramePixels::RectOf(LfImageId id, uint32_t rank) const {
 
 void FramePixels::Take(std::span<const BatchImage> images, uint32_t rank_end) {
   if (rank_end <= ranks_done_) return;
+  const Image<uint16_t> none;
   std::vector<KeptImage> kept(images.size());
   std::atomic<uint64_t> looked_at = 0;
   pool_.ForEach(images.size(), [&](size_t i) {
@@ -128,11 +128,9 @@ void FramePixels::Take(std::span<const BatchImage> images, uint32_t rank_end) {
     if (rects.empty()) return;
     looked_at += PixelsIn(rects);
     // A guarded frame beside has made opacities also of LF images that have none.
-    static const Image<uint16_t> kNone;
-    const bool has_opacity = light_field_.encoding.HasOpacity();
     kept[i] = KeepPixels(image.id, light_field_.Camera(image.id).intrinsics, image.pixels,
-                         has_opacity ? image.opacity.radiance : kNone, rects, keeps_all_,
-                         stored_values_, rebin_);
+                         light_field_.encoding.HasOpacity() ? image.opacity.radiance : none, rects,
+                         keeps_all_, stored_values_, rebin_);
     cpu_ns_ += timer.Nanoseconds();
   });
   std::erase_if(kept, [](const KeptImage& image) { return image.rect.empty(); });

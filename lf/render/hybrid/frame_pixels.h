@@ -93,7 +93,6 @@ class FramePixels : public ImageConsumer {
   class Store;
   std::vector<PixelRect> RectsOf(LfImageId id, uint32_t rank) const;
 
-  const ImageIndex& index_;
   const LightField& light_field_;
   const std::vector<KeptFrame> frames_;
   const std::vector<SelectedImage> images_;

@@ -49,9 +49,6 @@ struct NeedsOptions {
   }
   bool KeepsPixels() const { return Rebins(mode) && !KeepsCells(); }
   bool KeepsOnlyCells() const { return KeepsCells() && !Collects(mode); }
-  // Returns true if rays are needed for parts of the lens that no collected LF image covers
-  // (render/hybrid/lens_gaps.h).
-  bool FillsGaps() const { return KeepsCells() || mode == RenderMode::kHybrid; }
 
   // Returns true if the picture of a frame may depend on LF cameras whose LF images are not read
   // for it.

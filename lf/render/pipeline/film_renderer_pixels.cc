@@ -107,7 +107,6 @@ void FilmRenderer::AddKeptImages() {
   std::vector<SelectedImage> all;
   for (SelectedImage image : pixels_->images()) {
     if (image.rank < pixels_->ranks_done()) continue;
-    if (film_.shard && !film_.shard->Holds(image.rank)) continue;
     if (std::binary_search(images_.begin(), images_.end(), image, is_before)) continue;
     if (film_.Collects()) image.rect = {};  // none of its pixels is collected
     all.push_back(image);
