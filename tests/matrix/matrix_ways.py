@@ -192,8 +192,7 @@ class Matrix(World):
                 (folder / path.name).hardlink_to(path)
         light_field = folder
         if cell.input != "folder":
-            light_field = folder / "a.lfs"
-            self.make("lfcompressor", folder, "-o", light_field)
+            light_field = self.encode([folder], cell.input, folder / "a.lfs")
         out = folder / "out"
         self.make("lfrenderer", light_field, self.path_of(cell.field), "-o", out,
                   "--no-contact-sheet", *MODES[cell.mode])

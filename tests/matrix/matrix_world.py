@@ -313,6 +313,11 @@ class World:
             words += ["--needed-pixels"] if "needed" in source else []
         else:
             words = [self.folder_of(field)]
+        return self.encode(words, source, store)
+
+    def encode(self, words, source, store):
+        """Makes a packed store of a kind of INPUTS from the inputs `words` of lfcompressor, and returns its path."""
+        words = [*words]
         profile = {"lossy": "default", "recorded": "recorded", "group": "group-lossless"}.get(
             source.split()[0], "lossless")
         if source in ("store by resolution", "coarser store"):
