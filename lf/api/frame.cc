@@ -68,7 +68,7 @@ Result<Frame> FrameRenderer::Develop(size_t index) {
   LF_CHECK(index < renderer.frame_count());
   const WorkSettings& work = renderer.setup().work();
   constexpr bool kWithEffective = true;
-  LF_ASSIGN_OR_RETURN(const std::optional<Completion> completion, renderer.Complete(index));
+  LF_ASSIGN_OR_RETURN(const std::optional<Completion> completion, renderer.Complete(index, false));
   RenderedFrame rendered =
       renderer.Develop(index, completion, kWithEffective, [&] { return work.IsStopped(); });
   if (work.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};

@@ -102,7 +102,7 @@ class Film {
     Check(f);
     return CallWithoutGil(
         [&] {
-          const std::optional<Completion> completion = Take(renderer().Complete(f));
+          const std::optional<Completion> completion = Take(renderer().Complete(f, false));
           const auto is_interrupted = [&] { return signals_.stop.load(); };
           RenderedFrame rendered = renderer().Develop(f, completion, true, is_interrupted);
           PlateNotes notes = renderer().NotesOf(f);

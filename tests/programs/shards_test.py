@@ -11,10 +11,13 @@ import json
 import resource
 import shutil
 import signal
+import struct
 import subprocess
 import sys
 import time
 import unittest
+
+import xxhash
 
 import small_field
 from program_test_case import ProgramTestCase
@@ -26,6 +29,35 @@ def digests(folder, pattern="frame_*.exr"):
     """Returns the sha256 of the files of a folder."""
     return {path.name: hashlib.sha256(path.read_bytes()).hexdigest()
             for path in sorted(folder.glob(pattern))}
+
+
+def after_rays(plate, at):
+    """Returns where the rays of a plate, of one chunk and without wide words, end in a plate file (doc/formats/plate.md)
+    if they begin at `at`."""
+    return at + 16 + struct.unpack_from("<I", plate, at)[0] + 8
+
+
+def front_of(plate):
+    """Returns head and text of a plate file of 80 x 60 elements with gaps."""
+    version, text_bytes, width, height, channels, rows = struct.unpack_from("<6I", plate, 8)
+    assert (version, width, height, channels) == (4, 80, 60, 3) and rows >= height
+    return plate[:40 + text_bytes]
+
+
+def without_gaps(plate):
+    """Returns the bytes of a plate file without the gaps of its lens."""
+    begin = len(front_of(plate)) + 8
+    front = plate[:8] + struct.pack("<I", 3) + front_of(plate)[12:]
+    return front + struct.pack("<Q", xxhash.xxh3_64_intdigest(front)) + plate[begin:after_rays(plate, begin)]
+
+
+def with_shares_of_0(plate):
+    """Returns the bytes of a plate file whose gaps have no share in any element."""
+    shares = after_rays(plate, after_rays(plate, len(front_of(plate)) + 8) + 16)
+    # A frame of zstd with one block, which repeats a byte.
+    size = 80 * 60 * 4
+    stored = bytes.fromhex("28b52ffda0") + struct.pack("<I", size) + struct.pack("<I", size << 3 | 3)[:3] + b"\0"
+    return plate[:shares] + struct.pack("<IIQ", len(stored), 0, xxhash.xxh3_64_intdigest(stored, seed=2)) + stored
 
 
 class ShardsTest(ProgramTestCase):
@@ -121,14 +153,16 @@ class ShardsTest(ProgramTestCase):
             self.assertIn(gap or "", result.stderr)
 
     def test_packages_may_be_cut_too(self):
-        expected = self.render("whole")
-        self.succeeds(PREPROCESSOR, self.field, self.path, "-o", self.folder / "packages",
-                      "--packages", "2")
-        packages = sorted((self.folder / "packages").glob("*.lfp"))
-        self.assertEqual(len(packages), 2)
-        for shard in ("1/2", "2/2"):
-            self.succeeds(RENDERER, *packages, "-o", self.folder / "out", "--shard", shard)
-        self.assertEqual(self.merge("out", self.folder / "out" / "partial" / "shards"), expected)
+        small_field.write_path(self.folder, aperture=0.06)
+        for mode in ("collect", "hybrid"):
+            expected = self.render("whole-" + mode, "--mode", mode)
+            made, out = self.folder / f"packages-{mode}", self.folder / f"out-{mode}"
+            self.succeeds(PREPROCESSOR, self.field, self.path, "-o", made, "--packages", "2", "--mode", mode)
+            packages = sorted(made.glob("*.lfp"))
+            self.assertEqual(len(packages), 2)
+            for shard in ("1/2", "2/2"):
+                self.succeeds(RENDERER, *packages, "-o", out, "--shard", shard, "--mode", mode)
+            self.assertEqual(self.merge(out.name, out / "partial" / "shards"), expected)
 
     def test_what_is_missing_double_or_of_another_render_is_named(self):
         plates = self.shards("out", 3, of=(1, 3))
@@ -209,8 +243,81 @@ class ShardsTest(ProgramTestCase):
         frames = json.loads((self.folder / "cut" / "report.json").read_text())["frames"]
         self.assertEqual([frame["frame"] for frame in frames], [1, 2, 3])
 
+    # The first lens is larger than the capture, the second lies between LF cameras. One cut has more shards than LF
+    # images, another one is killed.
+    def test_shards_of_hybrids_add(self):
+        for name, lens in (("large", {"aperture": 0.06}), ("small", {"aperture": 0.002, "x": 0.005})):
+            small_field.write_path(self.folder, **lens)
+            expected = self.render(name, "--mode", "hybrid", "--keep-plates")
+            whole = json.loads((self.folder / name / "report.json").read_text())
+            for frame in whole["frames"]:
+                self.assertGreater(frame["interpolated_share"], 0.01)
+            for count in (2, 10):
+                if count == 2:
+                    self.killed("2/2", f"{name}-2", "--mode", "hybrid")
+                plates = self.shards(f"{name}-{count}", count, "--mode", "hybrid", "--threads", "1",
+                                     of=(1,) if count == 2 else None)
+                self.assertEqual(self.merge(f"{name}-{count}", plates), expected)
+                report = json.loads((self.folder / f"{name}-{count}" / "report.json").read_text())
+                for frame in report["frames"] + whole["frames"]:
+                    frame.pop("develop_s", None)
+                self.assertEqual(report["frames"], whole["frames"])
+                self.assertEqual(report["inputs"], whole["inputs"])
+            # Plates that a whole render kept are completed in the same way.
+            self.assertEqual(self.merge(name + "-again", *sorted((self.folder / name).glob("*.plate"))), expected)
+            shutil.rmtree(plates / "shard_7_of_10")
+            self.fails(3, ["10 shards are expected, but 9 are given", "missing are 7"], MERGE, plates, "-o",
+                       self.folder / "no")
+
+    def killed(self, shard, out, *options):
+        """Renders a shard that is killed several times and resumed."""
+        command = [RENDERER, self.field, self.path, "-o", self.folder / out, "--shard", shard, "--dump-every", "0.001s",
+                   *options, "--resume"]
+        for attempt in range(4):
+            process = subprocess.Popen(list(map(str, command)), stderr=subprocess.DEVNULL)
+            time.sleep(0.03 * (attempt + 1))
+            process.send_signal(signal.SIGTERM if attempt == 2 else signal.SIGKILL)
+            process.communicate()
+        self.succeeds(*command)
+
+    def test_parts_of_other_hybrids_are_refused(self):
+        small_field.write_path(self.folder, aperture=0.06)
+        plates = self.shards("hybrid", 2, "--mode", "hybrid")
+        for options in (["--mode", "collect"], ["--mode", "hybrid", "--lens-weights", "none"]):
+            other = self.shards("other-" + options[-1], 2, *options, of=(2,))
+            self.fails(3, ["shard_2_of_2"], MERGE, plates / "shard_1_of_2", other, "-o", self.folder / "no")
+        plate = plates / "shard_1_of_2" / "frame_0001.plate"
+        whole = plate.read_bytes()
+        plate.write_bytes(without_gaps(whole))
+        self.fails(3, ["shard_1_of_2/frame_0001.plate has 3 channels and no gaps of a lens, but", "shard_2_of_2"], MERGE,
+                   plates, "-o", self.folder / "no")
+        self.assertFalse((self.folder / "no").exists())
+        plate.write_bytes(with_shares_of_0(whole))
+        self.fails(3, ["shard_2_of_2/frame_0001.plate", "the gaps of its lens have a share of", "but 0 in the plates before",
+                       "render it again"], MERGE, plates, "-o", self.folder / "no")
+        self.assertFalse(list((self.folder / "no").glob("frame_*")))
+        plate.write_bytes(whole)
+        self.assertEqual(len(self.merge("merged", plates)), 3)
+
+    # Cells do not add, and plates do not hold the light that is interpolated between them.
+    def test_plates_without_the_cells_of_a_hybrid_are_told(self):
+        small_field.write_path(self.folder, aperture=0.06)
+        for way, is_told in (("cells", True), ("pixels", False)):
+            self.render(way, "--mode", "hybrid", "--interpolation", way, "--keep-plates")
+            result = self.call(MERGE, *sorted((self.folder / way).glob("*.plate")), "-o", self.folder / (way + "-again"))
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual("has collected rays only" in result.stderr, is_told, result.stderr)
+        self.assertNotEqual(digests(self.folder / "cells"), digests(self.folder / "cells-again"))
+
+    def test_a_shard_whose_pixels_do_not_fit_is_refused(self):
+        small_field.write_path(self.folder, aperture=0.06)
+        for mode, words in (("rebin", "frames ask"), ("hybrid", "gaps of lenses ask")):
+            self.fails(2, ["--shard", f"--mode {mode}", words, "--max-rays 1000", "use more shards"], RENDERER, self.field,
+                       self.path, "-o", self.folder / "no", "--shard", "1/2", "--mode", mode, "--max-rays", "1000")
+
     def test_what_shards_cannot_do_is_refused(self):
-        for options in (["--mode", "hybrid"], ["--mode", "rebin", "--kept", "edges"],
+        for options in (["--mode", "hybrid", "--kept", "edges"], ["--mode", "hybrid", "--interpolation", "cells"],
+                        ["--mode", "rebin", "--kept", "edges"],
                         ["--mode", "rebin", "--interpolation", "cells"],
                         ["--stop-when", "samples>=3"], ["--keep-plates"],
                         ["--video", self.folder / "a.mp4"], ["--require", "samples>=2"]):

@@ -57,7 +57,7 @@ class StatisticSource final : public FrameSource {
   void Release(size_t f) override;
   bool IsReleased(size_t f) const override { return frames_[f].is_released; }
 
-  Result<std::optional<Completion>> Complete(size_t /*f*/) override {
+  Result<std::optional<Completion>> Complete(size_t /*f*/, bool /*with_plate*/) override {
     return std::optional<Completion>();
   }
   RenderedFrame Develop(size_t f, const std::optional<Completion>& completion, bool with_effective,

@@ -123,13 +123,15 @@ Result<Front> ReadFront(Source& source, size_t head_bytes) {
   if (std::string_view(begin.magic, sizeof(begin.magic)) != kind.magic)
     return InputError(fmt::format("{}: is not a {}: it does not begin with \"{}\"", source.name(),
                                   kind.noun, kind.magic.substr(0, kind.magic.size() - 1)));
-  if (begin.version != kind.version)
+  if (begin.version != kind.version &&
+      (kind.later_version == 0 || begin.version != kind.later_version))
     return InputError(fmt::format(
-        "{}: is a {} of version {}{}, but this program reads version {}: use the program that "
+        "{}: is a {} of version {}{}, but this program reads version{}: use the program that "
         "wrote it, or render again",
         source.name(), kind.noun, begin.version,
         begin.version < kind.version ? fmt::format(", which {} read", kBuildsOfEarlierFiles) : "",
-        kind.version));
+        kind.later_version == 0 ? fmt::format(" {}", kind.version)
+                                : fmt::format("s {} and {}", kind.version, kind.later_version)));
   if (begin.text_bytes > PlateReader::kMaxTextBytes)
     return source.Damaged(fmt::format("its head states {} bytes of text, expected at most {}",
                                       begin.text_bytes, PlateReader::kMaxTextBytes));

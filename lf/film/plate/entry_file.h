@@ -27,6 +27,7 @@ struct Kind {
   // The consequence of damage. Callers add what the user can do, which depends on whether the file
   // is a checkpoint, or a plate that lfmerge reads.
   std::string_view if_broken;
+  uint32_t later_version = 0;  // a second version that is read, version + 1; 0: there is none
 };
 
 // The head of every file, whether of plates, rebinned rays or kept pixels, begins with these

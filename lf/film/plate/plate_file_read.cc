@@ -3,6 +3,7 @@
 #include <zstd.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <optional>
 
@@ -58,7 +59,10 @@ Result<void> PlateReader::ReadHead() {
                                   head.rows_per_chunk, most_rows));
   // Refuses a file that is too short for the size of plate that its head states, before anybody
   // allocates a plate of this size.
-  const uint64_t least = uint64_t{(head.height - 1) / head.rows_per_chunk + 1} * sizeof(ChunkHead);
+  const bool has_gaps = head.version == kVersionWithGaps;
+  const uint64_t chunks = uint64_t{(head.height - 1) / head.rows_per_chunk + 1};
+  const uint64_t least =
+      chunks * sizeof(ChunkHead) * (has_gaps ? 3 : 1) + (has_gaps ? sizeof(GapHead) : 0);
   if (head.wide_count > source_->left() / sizeof(WideWord) ||
       least + head.wide_count * sizeof(WideWord) > source_->left())
     return InputError(fmt::format(
@@ -72,28 +76,65 @@ Result<void> PlateReader::ReadHead() {
   kind_ = *kind;
   rows_per_chunk_ = static_cast<int>(head.rows_per_chunk);
   wide_count_ = head.wide_count;
+  has_gaps_ = has_gaps;
   return {};
+}
+
+Result<void> PlateReader::CheckEnds() const {
+  if (source_->left() == 0) return {};
+  return source_->Damaged(fmt::format("{} bytes follow its end", source_->left()));
 }
 
 Result<void> PlateReader::AddTo(SensorPlate* plate, const std::function<bool()>& is_interrupted) {
   LF_CHECK(plate->width() == width_ && plate->height() == height_ && plate->kind() == kind_);
-  const int chunk_count = (height_ - 1) / rows_per_chunk_ + 1;
-  for (int chunk = 0; chunk < chunk_count; ++chunk) {
-    if (is_interrupted && is_interrupted()) return Error{ErrorKind::kInterrupted, "interrupted"};
-    LF_RETURN_IF_ERROR(AddChunk(static_cast<uint32_t>(chunk), plate));
-  }
-  LF_RETURN_IF_ERROR(AddWide(plate));
-  if (source_->left() != 0)
-    return source_->Damaged(fmt::format("{} bytes follow its end", source_->left()));
-  return {};
+  LF_RETURN_IF_ERROR(AddRays(0, wide_count_, plate, is_interrupted));
+  return has_gaps_ ? Result<void>() : CheckEnds();
 }
 
-Result<void> PlateReader::AddChunk(uint32_t chunk, SensorPlate* plate) {
-  const int y_begin = static_cast<int>(chunk) * rows_per_chunk_;
-  const int y_end = std::min(height_, y_begin + rows_per_chunk_);
-  const size_t row_words = static_cast<size_t>(width_) * static_cast<size_t>(kind_);
-  std::vector<uint64_t> words(static_cast<size_t>(y_end - y_begin) * row_words);
-  const size_t size = words.size() * sizeof(uint64_t);
+Result<void> PlateReader::AddGapsTo(PlateGaps* gaps, const std::function<bool()>& is_interrupted) {
+  LF_CHECK(has_gaps_);
+  GapHead head;
+  LF_RETURN_IF_ERROR(source_->Read(&head, sizeof(head)));
+  if (HashBytes({reinterpret_cast<const char*>(&head.wide_count), sizeof(head.wide_count)}) !=
+      head.hash)
+    return source_->Damaged("the checksum of the head of its gaps differs");
+  const bool is_first = gaps->rays.width() == 0;
+  if (is_first) {
+    gaps->rays = SensorPlate(width_, height_, GapKindOf(kind_));
+    gaps->share = Image<float>(width_, height_);
+  }
+  if (gaps->rays.width() != width_ || gaps->rays.height() != height_ ||
+      gaps->rays.kind() != GapKindOf(kind_))
+    return InputError(fmt::format("{}: has gaps of {} x {} elements, expected {} x {}",
+                                  source_->name(), width_, height_, gaps->rays.width(),
+                                  gaps->rays.height()));
+  const auto count = static_cast<uint32_t>(chunk_count());
+  LF_RETURN_IF_ERROR(AddRays(count, head.wide_count, &gaps->rays, is_interrupted));
+  for (uint32_t chunk = 0; chunk < count; ++chunk) {
+    if (is_interrupted && is_interrupted()) return Error{ErrorKind::kInterrupted, "interrupted"};
+    const int y_begin = static_cast<int>(chunk) * rows_per_chunk_;
+    LF_RETURN_IF_ERROR(ReadShares(2 * count + chunk, y_begin,
+                                  std::min(height_, y_begin + rows_per_chunk_), !is_first,
+                                  &gaps->share));
+  }
+  return CheckEnds();
+}
+
+// Adds the rays of a plate whose first chunk has this number.
+Result<void> PlateReader::AddRays(uint32_t first_chunk, uint64_t wide_count, SensorPlate* plate,
+                                  const std::function<bool()>& is_interrupted) {
+  for (int chunk = 0; chunk < chunk_count(); ++chunk) {
+    if (is_interrupted && is_interrupted()) return Error{ErrorKind::kInterrupted, "interrupted"};
+    const int y_begin = chunk * rows_per_chunk_;
+    LF_RETURN_IF_ERROR(AddChunk(first_chunk + static_cast<uint32_t>(chunk), y_begin,
+                                std::min(height_, y_begin + rows_per_chunk_), plate));
+  }
+  return AddWide(wide_count, plate);
+}
+
+// Reads and unpacks a chunk of `size` bytes.
+Result<std::vector<char>> PlateReader::ReadChunk(uint32_t number, int y_begin, int y_end,
+                                                 size_t size) {
   ChunkHead head;
   LF_RETURN_IF_ERROR(source_->Read(&head, sizeof(head)));
   if (head.stored_bytes > ZSTD_compressBound(size) || head.reserved != 0)
@@ -102,12 +143,20 @@ Result<void> PlateReader::AddChunk(uint32_t chunk, SensorPlate* plate) {
                                         ZSTD_compressBound(size)));
   std::string stored(head.stored_bytes, '\0');
   LF_RETURN_IF_ERROR(source_->Read(stored.data(), stored.size()));
-  if (HashBytes(stored, chunk) != head.hash)
+  if (HashBytes(stored, number) != head.hash)
     return source_->Damaged(fmt::format("the checksum of rows {}-{} differs", y_begin, y_end - 1));
   std::vector<char> planes(size);
   if (ZSTD_decompress(planes.data(), size, stored.data(), stored.size()) != size)
     return source_->Damaged(fmt::format("rows {}-{} cannot be unpacked", y_begin, y_end - 1));
-  FromPlanes(planes.data(), words);
+  return planes;
+}
+
+Result<void> PlateReader::AddChunk(uint32_t number, int y_begin, int y_end, SensorPlate* plate) {
+  const size_t row_words = static_cast<size_t>(width_) * static_cast<size_t>(plate->channels());
+  std::vector<uint64_t> words(static_cast<size_t>(y_end - y_begin) * row_words);
+  LF_ASSIGN_OR_RETURN(const std::vector<char> planes,
+                      ReadChunk(number, y_begin, y_end, words.size() * sizeof(uint64_t)));
+  FromPlanes(planes.data(), std::span(words));
   for (size_t i = 0; i < words.size(); ++i) {
     const ElementSum rays = {words[i] & SensorPlate::kSumMask, words[i] >> SensorPlate::kSumBits};
     if (rays.sum > 65535 * rays.count)
@@ -122,13 +171,38 @@ Result<void> PlateReader::AddChunk(uint32_t chunk, SensorPlate* plate) {
   return {};
 }
 
-Result<void> PlateReader::AddWide(SensorPlate* plate) {
-  const uint64_t row_words = static_cast<uint64_t>(width_) * static_cast<uint64_t>(kind_);
+// Reads the shares of some rows. If `compares` is true, *share has them already.
+Result<void> PlateReader::ReadShares(uint32_t number, int y_begin, int y_end, bool compares,
+                                     Image<float>* share) {
+  std::vector<uint32_t> words(static_cast<size_t>(y_end - y_begin) * static_cast<size_t>(width_));
+  LF_ASSIGN_OR_RETURN(const std::vector<char> planes,
+                      ReadChunk(number, y_begin, y_end, words.size() * sizeof(uint32_t)));
+  FromPlanes(planes.data(), std::span(words));
+  for (size_t i = 0; i < words.size(); ++i) {
+    const int x = static_cast<int>(i % static_cast<size_t>(width_));
+    const int y = y_begin + static_cast<int>(i / static_cast<size_t>(width_));
+    const auto read = std::bit_cast<float>(words[i]);
+    if (!(read >= 0 && read <= 1))
+      return source_->Damaged(fmt::format("row {}: {} is no share of a gap", y, read));
+    float& known = share->at(x, y);
+    if (compares && known != read)
+      return InputError(fmt::format(
+          "{}: the gaps of its lens have a share of {} in element ({}, {}), but {} in the plates "
+          "before, so that another program has rendered it",
+          source_->name(), read, x, y, known));
+    known = read;
+  }
+  return {};
+}
+
+Result<void> PlateReader::AddWide(uint64_t wide_count, SensorPlate* plate) {
+  const uint64_t row_words =
+      static_cast<uint64_t>(width_) * static_cast<uint64_t>(plate->channels());
   const uint64_t word_count = row_words * static_cast<uint64_t>(height_);
   Hasher hasher;
   uint64_t next_index = 0;
-  for (uint64_t done = 0; done < wide_count_;) {
-    std::vector<WideWord> block(std::min<uint64_t>(kWideBlock, wide_count_ - done));
+  for (uint64_t done = 0; done < wide_count;) {
+    std::vector<WideWord> block(std::min<uint64_t>(kWideBlock, wide_count - done));
     LF_RETURN_IF_ERROR(source_->Read(block.data(), block.size() * sizeof(WideWord)));
     hasher.Add({reinterpret_cast<const char*>(block.data()), block.size() * sizeof(WideWord)});
     for (const WideWord& word : block) {

@@ -191,7 +191,7 @@ TEST_F(PlateFile, WhatItSaysIsCheckedBeforeAnythingIsAllocated) {
   using plate_format::Head;
   const std::string bytes = BytesOf(testing::NoisePlate(20, 15, 7, SensorPlate::kMaxCount, true));
   ExpectError(WithHead(bytes, [](Head* head) { head->version = 7; }),
-              "version 7, but this program reads version 3: use the program that wrote it");
+              "version 7, but this program reads versions 3 and 4: use the program that wrote it");
   ExpectError(WithHead(bytes, [](Head* head) { head->version = 2; }),
               "version 2, which builds of lfrendertools from before version 0.1.0 read, but");
   ExpectError(WithHead(bytes, [](Head* head) { head->width = 0; }), "0 x 15");

@@ -9,10 +9,15 @@
 #include <span>
 
 #include "lf/film/plate/entry_file.h"
+#include "lf/film/plate/sensor_plate.h"
 
 namespace lf::plate_format {
 
-inline constexpr entry_file::Kind kKind = {"LFPLATE\n", 3, "plate", "the plate cannot be used"};
+// Version of a plate alone, and of a plate that the gaps of its lenses follow.
+inline constexpr uint32_t kVersion = 3;
+inline constexpr uint32_t kVersionWithGaps = 4;
+inline constexpr entry_file::Kind kKind = {"LFPLATE\n", kVersion, "plate",
+                                           "the plate cannot be used", kVersionWithGaps};
 
 // A plate's file begins with this head. The text of its entries follows, then the hash of both.
 struct Head {
@@ -46,25 +51,41 @@ struct WideWord {
 static_assert(sizeof(WideWord) == 24);
 inline constexpr size_t kWideBlock = 4096;  // number of wide words that are read at once
 
+// Head of the gaps, which follow the plate in a file of kVersionWithGaps. The chunks of their rays
+// follow it, with as many rows each as the chunks of the plate, then the wide words of these rays
+// and the XXH3 of these words, and then chunks of the same rows with the shares: one float for each
+// element, as a word of 32 bits. The numbers of all these chunks continue those of the plate.
+struct GapHead {
+  uint64_t wide_count;
+  uint64_t hash;  // XXH3 of wide_count
+};
+static_assert(sizeof(GapHead) == 16);
+
+// Returns the kind of the plate of the gaps.
+inline PlateKind GapKindOf(PlateKind kind) {
+  const bool has_opacity = kind == PlateKind::kOpacity || kind == PlateKind::kGuardedOpacity;
+  return has_opacity ? PlateKind::kOpacity : PlateKind::kColours;
+}
+
 // A chunk holds about this number of words, in whole rows.
 inline constexpr size_t kChunkWords = size_t{1} << 16;
 
 // Writes the first byte of all words, then the second byte of all words, and so on. Bytes that
 // hardly differ are then neighbours, which more than doubles the speed of compression
 // (doc/formats/plate.md).
-inline void ToPlanes(std::span<const uint64_t> words, char* planes) {
-  for (int byte = 0; byte < 8; ++byte)
+template <class Word>
+void ToPlanes(std::span<const Word> words, char* planes) {
+  for (size_t byte = 0; byte < sizeof(Word); ++byte)
     for (size_t i = 0; i < words.size(); ++i)
-      planes[static_cast<size_t>(byte) * words.size() + i] =
-          static_cast<char>(words[i] >> (8 * byte));
+      planes[byte * words.size() + i] = static_cast<char>(words[i] >> (8 * byte));
 }
 
-inline void FromPlanes(const char* planes, std::span<uint64_t> words) {
-  for (uint64_t& word : words) word = 0;
-  for (int byte = 0; byte < 8; ++byte)
+template <class Word>
+void FromPlanes(const char* planes, std::span<Word> words) {
+  for (Word& word : words) word = 0;
+  for (size_t byte = 0; byte < sizeof(Word); ++byte)
     for (size_t i = 0; i < words.size(); ++i)
-      words[i] |= static_cast<uint64_t>(static_cast<unsigned char>(
-                      planes[static_cast<size_t>(byte) * words.size() + i]))
+      words[i] |= static_cast<Word>(static_cast<unsigned char>(planes[byte * words.size() + i]))
                   << (8 * byte);
 }
 

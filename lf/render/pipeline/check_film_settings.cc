@@ -68,16 +68,14 @@ Result<void> CheckRecordingTimes(const Package& package, const FilmSettings& fil
   return {};
 }
 
-// Checks that a shard has no option that needs the rays of all shards. Kept pixels of the shards
-// add, unless pixels between them are interpolated.
+// Checks that a shard has no option that needs the rays of all shards. What shards collect from
+// kept pixels adds, unless pixels between them are interpolated.
 Result<void> CheckShard(const FilmSettings& film) {
   if (!film.shard) return {};
-  const bool adds =
-      film.mode == RenderMode::kCollect ||
-      (film.mode == RenderMode::kRebin && KeepsPixels(film) && film.rebin.kept != KeptRays::kEdges);
+  const bool adds = !film.Rebins() || (KeepsPixels(film) && film.rebin.kept != KeptRays::kEdges);
   if (adds && !film.stop_when.samples && !film.require.samples && !film.MeasuresNoise()) return {};
   return UsageError(
-      "{shard} renders only a part of the LF images, but {mode hybrid}, {mode rebin} with "
+      "{shard} renders only a part of the LF images, but {mode rebin} and {mode hybrid} with "
       "{kept edges} or {interpolation cells}, {stop_when} and {require} need all of them: leave "
       "out these options, or {shard}");
 }

@@ -8,6 +8,7 @@
 
 #include "lf/core/byte_text.h"
 #include "lf/core/log.h"
+#include "lf/film/develop/completion.h"
 #include "lf/render/collect/around_lens.h"
 #include "lf/render/collect/mosaic_share.h"
 #include "lf/render/hybrid/frame_sampling.h"
@@ -408,21 +409,27 @@ uint32_t FilmRenderer::RankOfEnd(size_t f) const {
 // (kInTheEnd), even if it takes only a part of the light field. A frame that was stopped or is
 // finished early is completed at its last rank. It has more gaps, because the LF images after this
 // rank do not cover them.
-Result<std::optional<Completion>> FilmRenderer::Complete(size_t f) {
+Result<std::optional<Completion>> FilmRenderer::Complete(size_t f, bool with_plate) {
   if (!rebinned_ && !pixels_) return std::optional<Completion>();
   const uint32_t done = Progress(f).ranks_done;
   if (CollectsKept()) {
     LF_RETURN_IF_ERROR(CollectKept(&frames_[f], done));
     return std::optional<Completion>();
   }
-  if (pixels_) return CompleteGaps(frames_[f], done);
+  if (pixels_) {
+    LF_ASSIGN_OR_RETURN(PlateGaps gaps, CollectGaps(frames_[f], done));
+    if (!with_plate) return std::optional(CompletionOf(gaps.rays, std::move(gaps.share)));
+    frames_[f].kept_gaps = std::move(gaps);
+    if (film_.shard) return std::optional<Completion>();
+    return std::optional(CompletionOf(frames_[f].kept_gaps->rays, frames_[f].kept_gaps->share));
+  }
   const bool is_all =
       !frames_[f].is_early && done >= std::min(frames_[f].ranks.end, setup_.index().rank_end());
   return std::optional(rebinned_->Complete(f, is_all ? LensGaps::kInTheEnd : done));
 }
 
 Result<RenderedFrame> FilmRenderer::Develop(size_t f) {
-  LF_ASSIGN_OR_RETURN(const std::optional<Completion> completion, Complete(f));
+  LF_ASSIGN_OR_RETURN(const std::optional<Completion> completion, Complete(f, false));
   return Develop(f, completion, true, {});
 }
 
@@ -455,10 +462,15 @@ PlateNotes FilmRenderer::NotesOf(size_t f) const {
   return notes;
 }
 
+void FilmRenderer::ForgetPicture(size_t f) {
+  frames_[f].kept_plate = SensorPlate(0, 0);
+  frames_[f].kept_gaps.reset();
+}
+
 void FilmRenderer::Release(size_t f) {
   Frame& frame = frames_[f];
   frame.is_released = true;
-  frame.kept_plate = SensorPlate(0, 0);
+  ForgetPicture(f);
   if (!film_.HasPlates()) return;
   collector_->Stop(f);
   frame.plate = SensorPlate(0, 0);

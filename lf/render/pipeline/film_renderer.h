@@ -22,6 +22,7 @@
 #include "lf/core/ids.h"
 #include "lf/core/result.h"
 #include "lf/film/develop/develop.h"
+#include "lf/film/plate/plate_file.h"
 #include "lf/film/plate/sensor_plate.h"
 #include "lf/render/collect/collect.h"
 #include "lf/render/collect/frame_lens.h"
@@ -101,8 +102,13 @@ class FilmRenderer final : public FrameSource {
   // Interpolates a frame from rebinned rays, or completes it from kept pixels. If the mode is
   // kRebin, collects the frame's plate from kept pixels. Returns nullopt if there is nothing to
   // mix.
-  Result<std::optional<Completion>> Complete(size_t f) override;
-  void ForgetPicture(size_t f) override { frames_[f].kept_plate = SensorPlate(0, 0); }
+  Result<std::optional<Completion>> Complete(size_t f, bool with_plate) override;
+  void ForgetPicture(size_t f) override;
+  // The gaps of a frame's lenses, as the last call of Complete() with with_plate made them; null if
+  // the frame has none.
+  const PlateGaps* GapsOf(size_t f) const {
+    return frames_[f].kept_gaps ? &*frames_[f].kept_gaps : nullptr;
+  }
   // Develops the rays that the frame has so far.
   Result<RenderedFrame> Develop(size_t f);
   RenderedFrame Develop(size_t f, const std::optional<Completion>& completion, bool with_effective,
@@ -150,7 +156,8 @@ class FilmRenderer final : public FrameSource {
     // With kRebin, the rays that were collected from kept pixels, and their counts.
     SensorPlate kept_plate{0, 0};
     FrameRays kept_rays;
-    NoiseMoments moments;  // moments of the plate; empty if noise is not measured
+    std::optional<PlateGaps> kept_gaps;  // see GapsOf()
+    NoiseMoments moments;                // moments of the plate; empty if noise is not measured
     // Places of the LF images that this run still collects. If there is an earlier run, the plate
     // already has the rays of the LF images at ranks before ranks.begin.
     RankRange ranks;
@@ -187,7 +194,8 @@ class FilmRenderer final : public FrameSource {
   std::vector<TakingFrame> TakingGaps(const Frame& frame) const;
   void AddKeptImages();
   Result<void> CollectKept(Frame* frame, uint32_t rank_end);
-  Result<std::optional<Completion>> CompleteGaps(const Frame& frame, uint32_t rank_end);
+  Result<void> CheckKeptAdd() const;
+  Result<PlateGaps> CollectGaps(const Frame& frame, uint32_t rank_end);
   Result<void> CollectFromKept(std::vector<CollectedFrame>* frame,
                                std::span<const TakingFrame> taking) const;
   Result<void> PrepareRebinning(const RunState* state);

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "lf/core/log.h"
-#include "lf/film/develop/completion.h"
 #include "lf/render/pipeline/film_renderer.h"
 
 namespace lf {
@@ -76,9 +75,10 @@ Result<void> FilmRenderer::PreparePixels(const RunState* state) {
   const FramePixels::Facts facts = pixels_->facts();
   if (film_.shard && !facts.keeps_all)
     return UsageError(fmt::format(
-        "{{shard}}, {{mode rebin}}: frames ask for about {:.3g} million pixels of this shard, but "
-        "{{max_rays {}}} has no room for all of them, and shards add up only if every shard keeps "
-        "all pixels: use more shards, increase {{max_rays}} or {{memory}}, or leave {{shard}} out",
+        "{{shard}}, {{mode {}}}: {} for about {:.3g} million pixels of this shard, but {{max_rays "
+        "{}}} has no room for all of them, and shards add up only if every shard keeps all pixels: "
+        "use more shards, increase {{max_rays}} or {{memory}}, or leave {{shard}} out",
+        NameOf(film_.mode), film_.Collects() ? "gaps of lenses ask" : "frames ask",
         facts.asked * 1e-6, options.max_cells));
   if (state == nullptr) return {};
   LF_ASSIGN_OR_RETURN(std::optional<RunState::Kept> saved,
@@ -145,12 +145,18 @@ Result<void> FilmRenderer::CollectFromKept(std::vector<CollectedFrame>* frame,
   return {};
 }
 
+// kOutput: this is a shard, and pixels were dropped.
+Result<void> FilmRenderer::CheckKeptAdd() const {
+  if (!film_.shard || !pixels_->facts().is_full) return {};
+  return OutputError(fmt::format(
+      "{{shard}}, {{mode {}}}: there was no room for all pixels that {} ask for, so that the "
+      "shards would not add up: increase {{max_rays}} or {{memory}}, or leave {{shard}} out",
+      NameOf(film_.mode), film_.Collects() ? "gaps of lenses" : "frames"));
+}
+
 // Collects the plate of a frame from the kept pixels of LF images at ranks before rank_end.
 Result<void> FilmRenderer::CollectKept(Frame* frame, uint32_t rank_end) {
-  if (film_.shard && pixels_->facts().is_full)
-    return OutputError(
-        "{shard}, {mode rebin}: there was no room for all pixels that frames ask for, so that the "
-        "shards would not add up: increase {max_rays} or {memory}, or leave {shard} out");
+  LF_RETURN_IF_ERROR(CheckKeptAdd());
   frame->kept_plate = EmptyPlateOf(*frame);
   std::vector<TakingFrame> taking = TakingInstants(*frame);
   if (frame->all_lens) taking.push_back(Taking(*frame, *frame->all_lens));
@@ -164,24 +170,19 @@ Result<void> FilmRenderer::CollectKept(Frame* frame, uint32_t rank_end) {
 }
 
 // Collects the gaps of a frame's lenses from the kept pixels of LF images at ranks before rank_end.
-Result<std::optional<Completion>> FilmRenderer::CompleteGaps(const Frame& frame,
-                                                             uint32_t rank_end) {
+// If no gap exists, the shares are 0: the channel `interpolated` is written nevertheless.
+Result<PlateGaps> FilmRenderer::CollectGaps(const Frame& frame, uint32_t rank_end) {
+  LF_RETURN_IF_ERROR(CheckKeptAdd());
   std::vector<TakingFrame> taking = TakingGaps(frame);
   const Intrinsics& plate = frame.lenses.front().camera().pinhole.intrinsics;
-  Image<float> share(plate.width_px, plate.height_px);
-  if (taking.empty()) {
-    // No gap exists. The channel `interpolated` is written nevertheless, and is 0.
-    Completion none{Image<float>(plate.width_px, plate.height_px, 3), std::move(share)};
-    if (setup_.light_field().encoding.HasOpacity())
-      none.opacity = Image<float>(plate.width_px, plate.height_px);
-    return std::optional(std::move(none));
-  }
+  PlateGaps gaps = {SensorPlate(plate.width_px, plate.height_px,
+                                PlateKindOf(setup_.light_field().encoding, false)),
+                    Image<float>(plate.width_px, plate.height_px)};
+  if (taking.empty()) return gaps;
   const RankRange ranks = {0, std::min(frame.ranks.end, rank_end)};
   for (TakingFrame& gap : taking) gap.ranks = ranks;
-  SensorPlate rays(plate.width_px, plate.height_px,
-                   PlateKindOf(setup_.light_field().encoding, false));
   CollectedFrame collected;
-  collected.plate = &rays;
+  collected.plate = &gaps.rays;
   collected.ranks = ranks;
   collected.correction = frame.correction;
   const auto weights_of = [](const GapLens& gap) -> ImageWeights {
@@ -196,11 +197,14 @@ Result<std::optional<Completion>> FilmRenderer::CompleteGaps(const Frame& frame,
   const double per_gap = 1 / static_cast<double>(frame.gaps.size());
   setup_.pool().ForEach(static_cast<size_t>(plate.height_px), [&](size_t row) {
     const int y = static_cast<int>(row);
-    for (int x = 0; x < plate.width_px; ++x)
+    for (int x = 0; x < plate.width_px; ++x) {
+      float& share = gaps.share.at(x, y);
       for (const GapLens& gap : frame.gaps)
-        if (gap.exists()) share.at(x, y) += static_cast<float>(per_gap * gap.ShareAt(x, y));
+        if (gap.exists()) share += static_cast<float>(per_gap * gap.ShareAt(x, y));
+      share = std::clamp(share, 0.0f, 1.0f);  // rounded sums may be slightly larger
+    }
   });
-  return std::optional(CompletionOf(rays, std::move(share)));
+  return gaps;
 }
 
 }  // namespace lf

@@ -105,13 +105,18 @@ Result<void> FilmRenderer::WritePlateOf(size_t f, const std::filesystem::path& p
   std::vector<const FrameLens*> of_frame;
   for (const FrameLens& lens : lenses(f)) of_frame.push_back(&lens);
   if (const FrameLens* const all = all_lens(f)) of_frame.push_back(all);
-  notes.skipped = SkippedOf(
-      skipped, setup_.index(),
-      {std::move(of_frame), {0, progress.ranks_done}, setup_.Select().reach, film_.shard});
+  std::vector<const GapLens*> gaps;
+  for (const GapLens& gap : frames_[f].gaps) gaps.push_back(&gap);
+  notes.skipped = SkippedOf(skipped, setup_.index(),
+                            {std::move(of_frame),
+                             std::move(gaps),
+                             {0, progress.ranks_done},
+                             setup_.Select().reach,
+                             film_.shard});
   notes.skipped_count = notes.skipped.size();
   for (auto& entry : TextOf(notes)) text.push_back(std::move(entry));
   if (film_.shard) text.emplace_back("shard", film_.shard->Text());
-  return WritePlate(path, text, PictureOf(f), setup_.pool());
+  return WritePlate(path, text, PictureOf(f), setup_.pool(), GapsOf(f));
 }
 
 }  // namespace lf

@@ -78,7 +78,10 @@ class FrameSource {
   // none. Must be called before Develop(), WritePlateOf() and Progress() of a frame that is
   // finished, because it may collect the frame's rays. Only one thread at a time may call it.
   // kInterrupted: WorkSettings::stop is set. kOutput: there is not enough memory.
-  virtual Result<std::optional<Completion>> Complete(size_t f) = 0;
+  //   with_plate  true: WritePlateOf() follows, which needs all that this made for the picture.
+  //               nullopt is then returned if the film is rendered in shards, because shards make
+  //               no pictures
+  virtual Result<std::optional<Completion>> Complete(size_t f, bool with_plate) = 0;
   // Frees what Complete() made for the picture of a frame; Complete() makes it again.
   virtual void ForgetPicture(size_t /*f*/) {}
   // Develops what was collected of the frame so far. FrameReport::samples and noise are not set,
@@ -102,8 +105,8 @@ class FrameSource {
   virtual Result<void> Save(RunState* state) = 0;
   // Ends a pass whose frames are all finished: removes the data that they shared from the state.
   virtual void End(RunState* state) = 0;
-  // Writes the plate of a finished frame. Several threads may call it at the same time, for
-  // different frames.
+  // Writes the plate of a finished frame, for which Complete() was called with with_plate. Several
+  // threads may call it at the same time, for different frames.
   //   notes    result of NotesOf(), with the version
   //   skipped  LF images that the render has left out so far
   // kUsage: the frames have no plates.

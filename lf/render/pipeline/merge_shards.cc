@@ -14,12 +14,14 @@
 #include "lf/core/file.h"
 #include "lf/core/file_lock.h"
 #include "lf/core/log.h"
+#include "lf/film/develop/completion.h"
 #include "lf/film/develop/video.h"
 #include "lf/pixels/files/whole_file.h"
 #include "lf/render/pipeline/check_outputs.h"
 #include "lf/render/pipeline/develop_frame.h"
 #include "lf/render/pipeline/frame_output.h"
 #include "lf/render/pipeline/render_pass.h"
+#include "lf/render/settings/render_mode.h"
 #include "lf/render/state/other_format.h"
 #include "lf/render/state/plate_notes.h"
 
@@ -36,6 +38,7 @@ struct ShardPlate {
   int width_px = 0;
   int height_px = 0;
   PlateKind kind = PlateKind::kColours;
+  bool has_gaps = false;
 };
 
 // Returns the inputs that say which light field a plate was rendered from, and how its numbers
@@ -96,6 +99,7 @@ Result<ShardPlate> Look(const fs::path& path) {
   plate.width_px = reader.width();
   plate.height_px = reader.height();
   plate.kind = reader.kind();
+  plate.has_gaps = reader.has_gaps();
   LF_ASSIGN_OR_RETURN(
       plate.notes, PlateNotesOf(reader.entries(), reader.width(), reader.height(), path.string()));
   LF_ASSIGN_OR_RETURN(plate.shard, ShardIn(reader.entries(), path.string()));
@@ -107,6 +111,12 @@ struct MergedFrame {
   std::vector<ShardPlate> plates;
   std::optional<FrameReport> report;  // set once this merge or an earlier one has made the frame
   bool is_kept = false;               // true: the frame of an earlier merge is kept
+};
+
+// The sums of all plates of a frame.
+struct MergedPlate {
+  SensorPlate plate{0, 0};
+  PlateGaps gaps;  // empty if the plates have none
 };
 
 // Adds the plates of each frame, and makes the pictures of all frames.
@@ -136,7 +146,8 @@ class Merger {
       frames_[plate.notes.frame].plates.push_back(std::move(plate));
     }
     LF_RETURN_IF_ERROR(CheckFrames());
-    WarnOfGaps();
+    WarnOfMissingFrames();
+    WarnOfHybridsWithoutGaps();
     LogDebug("{} plates of {} frames, the first in {} shards", files.size(), frames_.size(),
              First().shard.count);
     LF_RETURN_IF_ERROR(CheckOutputs(files));
@@ -235,6 +246,12 @@ class Merger {
                           "one render only",
                           id.value, one.path.string(), one.width_px, one.height_px,
                           plate.path.string(), plate.width_px, plate.height_px));
+        if (plate.kind != one.kind || plate.has_gaps != one.has_gaps)
+          return InputError(fmt::format(
+              "frame {}: {} has {} channels and {}, but {} has {} and {}: render all shards of a "
+              "frame with the same program",
+              id.value, one.path.string(), static_cast<int>(one.kind), GapWords(one),
+              plate.path.string(), static_cast<int>(plate.kind), GapWords(plate)));
         if (const auto difference = FirstDifference(plate.inputs, one.inputs))
           return InputError(fmt::format(
               "frame {}: {}: give only shards that were rendered with the same inputs and options",
@@ -258,7 +275,7 @@ class Merger {
   // Warns about frames without plates between frames with plates. It is no error, because
   // lfrenderer --frames may have left them out on purpose. Without the warning, a user who forgot
   // the plates of one machine would only get a shorter film.
-  void WarnOfGaps() const {
+  void WarnOfMissingFrames() const {
     std::vector<std::string> gaps;
     for (auto next = std::next(frames_.begin()); next != frames_.end(); ++next) {
       const uint32_t begin = std::prev(next)->first.value + 1, end = next->first.value;
@@ -270,6 +287,25 @@ class Merger {
     LogWarning("no plates are given for frames {}{}: the film is made without them",
                fmt::join(gaps.begin(), gaps.begin() + static_cast<std::ptrdiff_t>(said), ", "),
                gaps.size() > said ? ", ..." : "");
+  }
+
+  static const char* GapWords(const ShardPlate& plate) {
+    return plate.has_gaps ? "the gaps of its lens" : "no gaps of a lens";
+  }
+
+  // Warns if the plates of a hybrid do not say what completes them.
+  void WarnOfHybridsWithoutGaps() const {
+    for (const auto& [id, frame] : frames_) {
+      const ShardPlate& plate = frame.plates.front();
+      const std::string* const mode = FindEntry(plate.inputs, "mode");
+      if (plate.has_gaps || mode == nullptr || *mode != NameOf(RenderMode::kHybrid)) continue;
+      LogWarning(
+          "{}: was rendered with {{lfrenderer mode hybrid}}, but has collected rays only, because "
+          "plates do not store light that is interpolated from cells: the frames lack this light; "
+          "to keep it, render with {{lfrenderer interpolation pixels}}",
+          plate.path.string());
+      return;
+    }
   }
 
   // Refuses to replace a finished video by one without frames of the earlier film, and warns if
@@ -333,6 +369,37 @@ class Merger {
                            InputsOfCamera(notes.frame, notes.camera, notes.shutter));
   }
 
+  // Adds a plate file to the sums of its frame.
+  Result<void> Add(const ShardPlate& plate, MergedPlate* sum) const {
+    LF_ASSIGN_OR_RETURN(PlateReader reader, OpenPlate(plate.path));
+    if (reader.width() != plate.width_px || reader.height() != plate.height_px ||
+        reader.kind() != plate.kind || reader.has_gaps() != plate.has_gaps)
+      return InputError(fmt::format("{}: was replaced while lfmerge read it: start lfmerge again",
+                                    plate.path.string()));
+    const auto is_stopped = [this] { return IsStopped(); };
+    Result<void> added = reader.AddTo(&sum->plate, is_stopped);
+    if (added && reader.has_gaps()) added = reader.AddGapsTo(&sum->gaps, is_stopped);
+    if (!added && added.error().kind == ErrorKind::kInterrupted) return Interrupted();
+    if (!added) return WithRemedy(added.error());
+    return {};
+  }
+
+  // Develops the sums of a frame, and writes its picture.
+  Result<FrameReport> WritePictureOf(const PlateNotes& notes, MergedPlate sum) const {
+    const auto is_stopped = [this] { return IsStopped(); };
+    std::optional<Completion> completion;
+    if (!sum.gaps.share.empty())
+      completion = CompletionOf(sum.gaps.rays, std::move(sum.gaps.share), &pool_);
+    sum.gaps = PlateGaps();  // frees the memory
+    RenderedFrame made = DevelopFrame(notes, sum.plate, completion ? &*completion : nullptr,
+                                      IsExr(options_.format), pool_, is_stopped);
+    const Result<void> written = WritePicture(notes, std::move(made.picture), PathOf(notes.frame),
+                                              options_.format, options_.picture, is_stopped);
+    if (!written && written.error().kind == ErrorKind::kInterrupted) return Interrupted();
+    LF_RETURN_IF_ERROR(written);
+    return std::move(made.report);
+  }
+
   Result<void> WriteFrameOf(MergedFrame* frame) {
     const std::vector<ShardPlate>& plates = frame->plates;
     const ShardPlate& first = plates.front();
@@ -340,36 +407,19 @@ class Merger {
     notes.rays = {};
     notes.develop.adds_opacity = options_.adds_opacity;
     for (const ShardPlate& plate : plates) notes.rays += plate.notes.rays;
-    SensorPlate sum(0, 0);
-    if (!frame->is_kept) sum = SensorPlate(first.width_px, first.height_px, first.kind);
+    MergedPlate sum;
+    if (!frame->is_kept) sum.plate = SensorPlate(first.width_px, first.height_px, first.kind);
     for (const ShardPlate& plate : plates) {
       if (IsStopped()) return Interrupted();
-      if (!frame->is_kept) {
-        LF_ASSIGN_OR_RETURN(PlateReader reader, OpenPlate(plate.path));
-        if (reader.width() != first.width_px || reader.height() != first.height_px ||
-            reader.kind() != first.kind)
-          return InputError(fmt::format(
-              "{}: was replaced while lfmerge read it: start lfmerge again", plate.path.string()));
-        const Result<void> added = reader.AddTo(&sum, [this] { return IsStopped(); });
-        if (!added && added.error().kind == ErrorKind::kInterrupted) return Interrupted();
-        if (!added) return WithRemedy(added.error());
-      }
+      if (!frame->is_kept) LF_RETURN_IF_ERROR(Add(plate, &sum));
       ++now_.plate_count;
       if (progress_) progress_(now_);
     }
     if (!frame->is_kept) {
-      const auto is_stopped = [this] { return IsStopped(); };
-      RenderedFrame made =
-          DevelopFrame(notes, sum, nullptr, IsExr(options_.format), pool_, is_stopped);
-      const Result<void> written = WritePicture(notes, std::move(made.picture), PathOf(notes.frame),
-                                                options_.format, options_.picture, is_stopped);
-      if (!written && written.error().kind == ErrorKind::kInterrupted) return Interrupted();
-      LF_RETURN_IF_ERROR(written);
-      frame->report = made.report;
+      LF_ASSIGN_OR_RETURN(frame->report, WritePictureOf(notes, std::move(sum)));
     }
     LogDebug("frame {}: {} plates, {} rays of {} LF images{}", notes.frame.value, plates.size(),
              notes.rays.accepted_count, notes.rays.image_count, frame->is_kept ? "; kept" : "");
-    accepted_count_ += notes.rays.accepted_count;
     ++now_.frame_count;
     if (progress_) progress_(now_);
     return {};
@@ -445,7 +495,7 @@ class Merger {
     LF_RETURN_IF_ERROR(WriteReport(report, ReportPath()));
     if (options_.contact_sheet) LF_RETURN_IF_ERROR(film.WriteContactSheet(frames, 2, pool_));
     if (options_.video) LF_RETURN_IF_ERROR(film.WriteVideo(frames, *options_.video));
-    if (accepted_count_ == 0)
+    if (report.IsBlack())
       return InputError(fmt::format(
           "{}: all frames are black, because the plates contain no rays: check in lfvisualizer "
           "that the camera path is within the capture, and check the masks of the LF images",
@@ -460,7 +510,6 @@ class Merger {
   std::optional<FileLock> lock_;
   std::map<FrameId, MergedFrame> frames_;
   MergeProgress now_;
-  uint64_t accepted_count_ = 0;
 };
 
 }  // namespace

@@ -62,8 +62,9 @@ class FilmOfRays final : public FilmSource {
     LF_RETURN_IF_ERROR(setup->PlanSlabs());
     const MemoryPlan& plan = setup->plan();
     size_t at_once = plan.frames_finished_at_once;
-    // With kRebin, a frame that is finished has a plate, in the memory that LF images had.
-    if (KeepsPixels(setup->film()) && !setup->film().Collects())
+    // A frame that is finished has a plate of the rays of kept pixels, in the memory that LF images
+    // had.
+    if (KeepsPixels(setup->film()))
       at_once = std::min(at_once, std::max<size_t>(1, plan.batches_bytes / 4 / plan.plate_bytes));
     return PassPlan{
         plan.frames_per_pass, at_once, 1,

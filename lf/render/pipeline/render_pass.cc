@@ -118,7 +118,7 @@ Result<void> RenderPass::FinishAtOnce(std::span<const size_t> frames) {
   std::vector<Finishing> finishing(frames.size());
   for (size_t i = 0; i < frames.size(); ++i) {
     finishing[i].f = frames[i];
-    LF_ASSIGN_OR_RETURN(finishing[i].completion, source_->Complete(frames[i]));
+    LF_ASSIGN_OR_RETURN(finishing[i].completion, source_->Complete(frames[i], WritesPlates()));
   }
   context_.setup.pool().ForEach(finishing.size(), [&](size_t i) {
     finishing[i].written = WriteFiles(finishing[i].f, finishing[i].completion);
@@ -148,7 +148,7 @@ Result<FrameReport> RenderPass::WriteFiles(size_t f, const std::optional<Complet
   const FrameId id = source_->id(f);
   const std::filesystem::path to = context_.state.FinishedPath(id);
   const bool is_shard = context_.setup.film().shard.has_value();
-  if (context_.folder.keep_plates || is_shard) {
+  if (WritesPlates()) {
     std::filesystem::path plate = to;
     LF_RETURN_IF_ERROR(source_->WritePlateOf(f, plate.replace_extension(".plate"), context_.state,
                                              NotesOf(f), Totals().skipped));

@@ -76,6 +76,9 @@ class RenderPass {
   Result<FrameReport> WritePicture(size_t f, const std::optional<Completion>& completion,
                                    const std::filesystem::path& to,
                                    const std::function<bool()>& is_interrupted) const;
+  bool WritesPlates() const {
+    return context_.folder.keep_plates || context_.setup.film().shard.has_value();
+  }
   void WarnIfBlack(const FrameReport& report);
   void BeginRecords();
   Result<void> EndRecords();

@@ -48,7 +48,7 @@ Result<void> RenderPass::SavePictures(double picture_budget_s) {
   if (IsStopped()) is_interrupted = [=] { return NowSeconds() - begin_s >= picture_budget_s; };
   for (const size_t f : oldest_first) {
     if (NowSeconds() - begin_s >= picture_budget_s) break;
-    const Result<std::optional<Completion>> completion = source_->Complete(f);
+    const Result<std::optional<Completion>> completion = source_->Complete(f, false);
     const Result<FrameReport> written =
         completion ? WritePicture(f, *completion, context_.state.PicturePath(source_->id(f)),
                                   is_interrupted)

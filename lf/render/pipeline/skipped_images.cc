@@ -16,10 +16,16 @@ bool Takes(const FrameTakes& frame, const ImageIndex& index, LfImageId id) {
   const PinholeCamera camera = index.light_field().Camera(id);
   std::vector<IdealCell> cells;
   if (camera.intrinsics.has_distortion()) cells = MakeIdealCells(camera.intrinsics);
-  return std::any_of(frame.lenses.begin(), frame.lenses.end(), [&](const FrameLens* lens) {
-    return !lens->WeightsOf(id).are_none() &&
-           !ContributingRect(camera, lens->camera(), cells, frame.reach).empty();
-  });
+  const auto sees = [&](const RenderCamera& lens) {
+    return !ContributingRect(camera, lens, cells, frame.reach).empty();
+  };
+  return std::any_of(frame.lenses.begin(), frame.lenses.end(),
+                     [&](const FrameLens* lens) {
+                       return !lens->WeightsOf(id).are_none() && sees(lens->camera());
+                     }) ||
+         std::any_of(frame.gaps.begin(), frame.gaps.end(), [&](const GapLens* gap) {
+           return gap->exists() && gap->Takes(id) && sees(gap->CameraOf(id));
+         });
 }
 
 }  // namespace

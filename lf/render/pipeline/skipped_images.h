@@ -10,6 +10,7 @@
 
 #include "lf/render/collect/collect.h"
 #include "lf/render/collect/frame_lens.h"
+#include "lf/render/hybrid/gap_lens.h"
 #include "lf/render/settings/shard.h"
 #include "lf/selection/select.h"
 
@@ -17,7 +18,9 @@ namespace lf {
 
 // The properties of a frame that decide which LF images it takes.
 struct FrameTakes {
-  std::vector<const FrameLens*> lenses;  // the frame takes an LF image if any of them does
+  // The frame takes an LF image if any of its lenses or gaps does.
+  std::vector<const FrameLens*> lenses;
+  std::vector<const GapLens*> gaps;
   RankRange ranks;
   PixelReach reach = PixelReach::kOwn;
   std::optional<Shard> shard;  // shard of the render; unset: all LF images
