@@ -165,7 +165,8 @@ class Plate:
 
     Plates of the shards of a frame (`lfrenderer --shard`) can be added: their sum is the plate of all LF images, with
     the same bits in any order. A :class:`UsageError` tells if two plates are of different cameras, light fields or
-    options, or if both have the rays of the same LF images.
+    options, or if both have the rays of the same LF images. The plate of a hybrid (`mode="hybrid"`) also has the rays
+    that complete it, unless they are interpolated from cells; :meth:`develop` mixes them.
     """
 
     def __init__(self, core: _core.Plate) -> None:

@@ -118,6 +118,10 @@ class Film {
     if (!setup_->film().Collects())
       throw Failure(UsageError("mode=\"rebin\": its frames have no plates"));
     auto plate = std::make_unique<Plate>();
+    if (renderer().pixels() != nullptr)
+      CallWithoutGil([&] { return Take(renderer().Complete(f, true)); }, &signals_);
+    if (const PlateGaps* const gaps = renderer().GapsOf(f)) plate->gaps = CopyOf(*gaps);
+    renderer().ForgetPicture(f);
     plate->sums = CopyOf(renderer().plate(f));
     plate->notes = renderer().NotesOf(f);
     plate->notes.version = Version();

@@ -18,6 +18,7 @@
 #include "python/src/errors.h"
 #include "python/src/work.h"
 
+#include "lf/film/develop/completion.h"
 #include "lf/film/develop/frame_file.h"
 #include "lf/film/plate/plate_file.h"
 #include "lf/render/pipeline/develop_frame.h"
@@ -120,7 +121,10 @@ Frame DevelopPlate(const Plate& plate, int threads) {
   return CallWithoutGil([&] {
     PlateNotes notes = plate.notes;
     notes.develop.adds_opacity = true;
-    RenderedFrame rendered = DevelopFrame(notes, plate.sums, nullptr, true, pool, {});
+    std::optional<Completion> completion;
+    if (plate.gaps) completion = CompletionOf(plate.gaps->rays, plate.gaps->share, &pool);
+    RenderedFrame rendered =
+        DevelopFrame(notes, plate.sums, completion ? &*completion : nullptr, true, pool, {});
     return MakeFrame(std::move(rendered.picture), std::move(notes), plate.sums.has_opacity());
   });
 }
@@ -148,6 +152,7 @@ std::unique_ptr<Plate> LoadPlate(const std::string& path) {
     plate->shard_count = shard.count;
     plate->shards = {shard.number};
     Take(reader.AddTo(&plate->sums));
+    if (reader.has_gaps()) Take(reader.AddGapsTo(&plate->gaps.emplace()));
   });
   return plate;
 }
@@ -167,7 +172,9 @@ void SavePlate(const Plate& plate, const std::string& path) {
     entries.emplace_back("shard", Shard{*plate.shards.begin(), plate.shard_count}.Text());
   }
   ThreadPool& pool = PoolOf(0);
-  RunWithoutGil([&] { Take(WritePlate(path, entries, plate.sums, pool)); });
+  RunWithoutGil([&] {
+    Take(WritePlate(path, entries, plate.sums, pool, plate.gaps ? &*plate.gaps : nullptr));
+  });
 }
 
 // Throws a Failure (kUsage) unless the plates have different rays of the same frame of the same
@@ -183,6 +190,11 @@ void CheckCanBeAdded(const Plate& a, const Plate& b) {
     throw Failure(UsageError(
         fmt::format("plates of different frames, light fields or options cannot be added: {}",
                     difference->Text("one was made with", "the other with"))));
+  if (a.gaps.has_value() != b.gaps.has_value() ||
+      (a.gaps && a.gaps->share.pixels() != b.gaps->share.pixels()))
+    throw Failure(UsageError(
+        "plates with different gaps of their lenses cannot be added: render all shards of a hybrid "
+        "with the same program"));
   std::vector<uint32_t> both;
   std::set_intersection(a.shards.begin(), a.shards.end(), b.shards.begin(), b.shards.end(),
                         std::back_inserter(both));
@@ -198,6 +210,10 @@ std::unique_ptr<Plate> AddPlates(const Plate& a, const Plate& b) {
   auto sum = std::make_unique<Plate>();
   sum->sums = CopyOf(a.sums);
   sum->sums.Merge(b.sums);
+  if (a.gaps) {
+    sum->gaps = CopyOf(*a.gaps);
+    sum->gaps->rays.Merge(b.gaps->rays);
+  }
   sum->notes = a.notes;
   sum->notes.rays += b.notes.rays;
   sum->notes.skipped_count += b.notes.skipped_count;
@@ -210,9 +226,14 @@ std::unique_ptr<Plate> AddPlates(const Plate& a, const Plate& b) {
   return sum;
 }
 
+bool AreEqual(const Plate& a, const Plate& b) {
+  if (a.gaps.has_value() != b.gaps.has_value()) return false;
+  return a.sums == b.sums && (!a.gaps || (a.gaps->rays == b.gaps->rays &&
+                                          a.gaps->share.pixels() == b.gaps->share.pixels()));
+}
+
 // Returns [height][width][channels], sums or counts.
-py::array_t<uint64_t> WordsOf(const Plate& plate, uint64_t ElementSum::*member) {
-  const SensorPlate& sums = plate.sums;
+py::array_t<uint64_t> WordsOf(const SensorPlate& sums, uint64_t ElementSum::*member) {
   py::array_t<uint64_t> out(
       {py::ssize_t{sums.height()}, py::ssize_t{sums.width()}, py::ssize_t{sums.channels()}});
   uint64_t* to = out.mutable_data();
@@ -220,26 +241,16 @@ py::array_t<uint64_t> WordsOf(const Plate& plate, uint64_t ElementSum::*member) 
   return out;
 }
 
-// Pickle keeps a plate as these values.
-py::tuple StateOf(const Plate& plate) {
-  return py::make_tuple(EntriesOf(plate), WordsOf(plate, &ElementSum::sum),
-                        WordsOf(plate, &ElementSum::count), plate.shard_count, plate.shards);
-}
-
-std::unique_ptr<Plate> PlateOf(const py::tuple& state) {
-  const auto sums = state[1].cast<py::array_t<uint64_t>>(),
-             counts = state[2].cast<py::array_t<uint64_t>>();
+// Returns the plate with the sums and counts that WordsOf() returned.
+SensorPlate SumsOf(const py::handle& of_sums, const py::handle& of_counts) {
+  const auto sums = of_sums.cast<py::array_t<uint64_t>>(),
+             counts = of_counts.cast<py::array_t<uint64_t>>();
   const auto height = static_cast<int>(sums.shape(0)), width = static_cast<int>(sums.shape(1)),
              channels = static_cast<int>(sums.shape(2));
-  auto plate = std::make_unique<Plate>();
-  plate->sums = SensorPlate(width, height, PlateKindOf(static_cast<uint32_t>(channels)).value());
-  SetEntries(state[0].cast<PlateEntries>(), "a pickled plate", plate.get());
+  SensorPlate plate(width, height, PlateKindOf(static_cast<uint32_t>(channels)).value());
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
-      for (int c = 0; c < channels; ++c)
-        plate->sums.Add(x, y, c, {sums.at(y, x, c), counts.at(y, x, c)});
-  plate->shard_count = state[3].cast<uint32_t>();
-  plate->shards = state[4].cast<std::set<uint32_t>>();
+      for (int c = 0; c < channels; ++c) plate.Add(x, y, c, {sums.at(y, x, c), counts.at(y, x, c)});
   return plate;
 }
 
@@ -257,6 +268,29 @@ Image<T> ImageOf(const py::handle& value) {
                  static_cast<int>(array.shape(2)));
   std::copy_n(array.data(), array.size(), image.pixels().data());
   return image;
+}
+
+// Pickle keeps a plate as these values, and behind them, if it has gaps, their sums, counts and
+// shares.
+py::tuple StateOf(const Plate& plate) {
+  const py::tuple state =
+      py::make_tuple(EntriesOf(plate), WordsOf(plate.sums, &ElementSum::sum),
+                     WordsOf(plate.sums, &ElementSum::count), plate.shard_count, plate.shards);
+  if (!plate.gaps) return state;
+  return py::tuple(state + py::make_tuple(WordsOf(plate.gaps->rays, &ElementSum::sum),
+                                          WordsOf(plate.gaps->rays, &ElementSum::count),
+                                          ArrayCopy(plate.gaps->share)));
+}
+
+std::unique_ptr<Plate> PlateOf(const py::tuple& state) {
+  auto plate = std::make_unique<Plate>();
+  plate->sums = SumsOf(state[1], state[2]);
+  SetEntries(state[0].cast<PlateEntries>(), "a pickled plate", plate.get());
+  plate->shard_count = state[3].cast<uint32_t>();
+  plate->shards = state[4].cast<std::set<uint32_t>>();
+  if (state.size() > 5)
+    plate->gaps = PlateGaps{SumsOf(state[5], state[6]), ImageOf<float>(state[7])};
+  return plate;
 }
 
 // Pickle keeps a frame as these values.
@@ -297,6 +331,8 @@ SensorPlate CopyOf(const SensorPlate& plate) {
   return copy;
 }
 
+PlateGaps CopyOf(const PlateGaps& gaps) { return {CopyOf(gaps.rays), gaps.share}; }
+
 void AddFrames(py::module_& module) {
   py::class_<Frame>(module, "Frame")
       .def_property_readonly("number", [](const Frame& f) { return f.notes.frame.value; })
@@ -335,9 +371,9 @@ void AddFrames(py::module_& module) {
   py::class_<Plate>(module, "Plate")
       .def_static("load", &LoadPlate)
       .def_property_readonly("sums",
-                             [](const Plate& plate) { return WordsOf(plate, &ElementSum::sum); })
+                             [](const Plate& p) { return WordsOf(p.sums, &ElementSum::sum); })
       .def_property_readonly("counts",
-                             [](const Plate& plate) { return WordsOf(plate, &ElementSum::count); })
+                             [](const Plate& p) { return WordsOf(p.sums, &ElementSum::count); })
       .def_property_readonly("number", [](const Plate& p) { return p.notes.frame.value; })
       .def_property_readonly(
           "size", [](const Plate& p) { return std::pair(p.sums.width(), p.sums.height()); })
@@ -345,7 +381,7 @@ void AddFrames(py::module_& module) {
       .def(py::pickle([](const Plate& plate) { return StateOf(plate); }, &PlateOf))
       .def("save", &SavePlate)
       .def("__add__", &AddPlates)
-      .def("__eq__", [](const Plate& a, const Plate& b) { return a.sums == b.sums; })
+      .def("__eq__", &AreEqual)
       .def("develop", &DevelopPlate);
 }
 

@@ -5,10 +5,12 @@
 #include <pybind11/pybind11.h>
 
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <utility>
 
 #include "lf/film/develop/develop.h"
+#include "lf/film/plate/plate_file.h"
 #include "lf/film/plate/sensor_plate.h"
 #include "lf/pixels/files/image_file.h"
 #include "lf/render/state/plate_notes.h"
@@ -34,6 +36,7 @@ Frame MakeFrame(DevelopedFrame picture, PlateNotes notes, bool keeps_opacity);
 // A plate with the notes from which it can be developed.
 struct Plate {
   SensorPlate sums{0, 0};
+  std::optional<PlateGaps> gaps;  // of the lenses of a hybrid
   PlateNotes notes;
   RunInputs inputs;  // inputs of the rays and of the camera; as far as its file states them
   // The shards whose rays the plate has, of shard_count shards.
@@ -50,6 +53,7 @@ struct Plate {
 
 // Returns a plate with the same sums and counts.
 SensorPlate CopyOf(const SensorPlate& plate);
+PlateGaps CopyOf(const PlateGaps& gaps);
 
 void AddFrames(pybind11::module_& module);
 

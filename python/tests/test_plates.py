@@ -76,3 +76,29 @@ def test_lfmerge_reads_saved_plates(field, path, run, tmp_path):
     run("lfmerge", tmp_path / "one.plate", "-o", tmp_path / "frames", "--no-contact-sheet")
     lf.render(field, path).save(tmp_path / "frame.exr")
     assert (tmp_path / "frames/frame_0001.exr").read_bytes() == (tmp_path / "frame.exr").read_bytes()
+
+
+# The lens is larger than the capture, so that rays of kept pixels complete the frame.
+def test_plates_of_hybrids_are_completed(field, path, capture, run, tmp_path):
+    wide = lf.Path([camera.replace(f_number=camera.f_number / 8) for camera in path], path.fps)
+    wide.save(tmp_path / "wide.yaml")
+    for shard in ("1/2", "2/2"):
+        run("lfrenderer", capture, tmp_path / "wide.yaml", "-o", tmp_path / "out", "--shard", shard, "--mode", "hybrid",
+            "--frames", "1")
+    shards = [lf.Plate.load(file) for file in sorted((tmp_path / "out").rglob("*.plate"))]
+    whole, frame = plate_of(field, wide, mode="hybrid"), lf.render(field, wide, mode="hybrid")
+    assert frame.interpolated.max() > 0.1
+    assert sum(shards) == whole and shards[0] != whole
+    (tmp_path / "copies").mkdir()
+    for number, plate in enumerate((whole, *shards)):
+        plate.save(tmp_path / "copies" / f"{number}.plate")
+        assert lf.Plate.load(tmp_path / "copies" / f"{number}.plate") == plate == pickle.loads(pickle.dumps(plate))
+    for plate in (whole, sum(shards), pickle.loads(pickle.dumps(whole))):
+        developed = plate.develop()
+        assert np.array_equal(developed.rgb, frame.rgb)
+        assert np.array_equal(developed.interpolated, frame.interpolated)
+    run("lfmerge", tmp_path / "copies" / "0.plate", "-o", tmp_path / "frames", "--no-contact-sheet")
+    frame.save(tmp_path / "frame.exr")
+    assert (tmp_path / "frames/frame_0001.exr").read_bytes() == (tmp_path / "frame.exr").read_bytes()
+    cells = plate_of(field, wide, mode="hybrid", interpolation="cells")
+    assert cells != whole and cells.develop().interpolated is None
