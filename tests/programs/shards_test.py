@@ -265,6 +265,9 @@ class ShardsTest(ProgramTestCase):
                 self.assertEqual(report["inputs"], whole["inputs"])
             # Plates that a whole render kept are completed in the same way.
             self.assertEqual(self.merge(name + "-again", *sorted((self.folder / name).glob("*.plate"))), expected)
+            looks = ["--frame-alpha", "--z", "--colour-space", "acescg", "--exr-compression", "zips"]
+            self.assertEqual(self.merge(name + "-look", plates, options=looks),
+                             self.render(name + "-whole-look", "--mode", "hybrid", *looks))
             shutil.rmtree(plates / "shard_7_of_10")
             self.fails(3, ["10 shards are expected, but 9 are given", "missing are 7"], MERGE, plates, "-o",
                        self.folder / "no")

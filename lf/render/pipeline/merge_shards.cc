@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 
@@ -21,6 +20,7 @@
 #include "lf/render/pipeline/develop_frame.h"
 #include "lf/render/pipeline/frame_output.h"
 #include "lf/render/pipeline/render_pass.h"
+#include "lf/render/pipeline/shard_plate.h"
 #include "lf/render/settings/render_mode.h"
 #include "lf/render/state/other_format.h"
 #include "lf/render/state/plate_notes.h"
@@ -28,84 +28,6 @@
 namespace lf {
 namespace fs = std::filesystem;
 namespace {
-
-// The facts about one plate file. The rays stay in the file.
-struct ShardPlate {
-  fs::path path;
-  Shard shard;
-  PlateNotes notes;
-  RunInputs inputs;  // entries that all plates of a frame have in common
-  int width_px = 0;
-  int height_px = 0;
-  PlateKind kind = PlateKind::kColours;
-  bool has_gaps = false;
-};
-
-// Returns the inputs that say which light field a plate was rendered from, and how its numbers
-// became light.
-RunInputs LightFieldOf(const ShardPlate& plate) {
-  RunInputs inputs;
-  for (const auto& entry : plate.inputs)
-    if (entry.first.starts_with("light_field.")) inputs.push_back(entry);
-  return inputs;
-}
-
-Result<std::vector<fs::path>> FilesOf(const std::vector<fs::path>& given) {
-  std::vector<fs::path> files;
-  for (const fs::path& path : given) {
-    std::error_code error;
-    if (!fs::is_directory(path, error)) {
-      files.push_back(path);
-      continue;
-    }
-    const size_t before = files.size();
-    for (auto entry = fs::recursive_directory_iterator(path, error);
-         !error && entry != fs::recursive_directory_iterator(); entry.increment(error))
-      if (entry->path().extension() == ".plate" &&
-          !entry->path().filename().string().starts_with('.'))
-        files.push_back(entry->path());
-    if (error)
-      return InputError(fmt::format(
-          "{}: cannot be searched for plates ({}): make the folder and the folders in it readable",
-          path.string(), error.message()));
-    if (files.size() == before)
-      return InputError(
-          fmt::format("{}: contains no plates: expected files that end in .plate, written by "
-                      "{{lfrenderer shard}} or {{keep_plates}}",
-                      path.string()));
-  }
-  std::sort(files.begin(), files.end());
-  for (size_t i = 1; i < files.size(); ++i)
-    if (files[i] == files[i - 1])
-      return UsageError(fmt::format("{}: is given twice: give each plate once", files[i].string()));
-  return files;
-}
-
-// Adds to the error of a plate that cannot be read what to do.
-Error WithRemedy(const Error& error) {
-  return {error.kind, error.message + "; copy the plate again, or render it again"};
-}
-
-Result<PlateReader> OpenPlate(const fs::path& path) {
-  Result<PlateReader> reader = PlateReader::Open(path);
-  if (!reader) return WithRemedy(reader.error());
-  return reader;
-}
-
-Result<ShardPlate> Look(const fs::path& path) {
-  LF_ASSIGN_OR_RETURN(const PlateReader reader, OpenPlate(path));
-  ShardPlate plate;
-  plate.path = path;
-  plate.width_px = reader.width();
-  plate.height_px = reader.height();
-  plate.kind = reader.kind();
-  plate.has_gaps = reader.has_gaps();
-  LF_ASSIGN_OR_RETURN(
-      plate.notes, PlateNotesOf(reader.entries(), reader.width(), reader.height(), path.string()));
-  LF_ASSIGN_OR_RETURN(plate.shard, ShardIn(reader.entries(), path.string()));
-  plate.inputs = SharedEntries(reader.entries());
-  return plate;
-}
 
 struct MergedFrame {
   std::vector<ShardPlate> plates;
@@ -135,14 +57,14 @@ class Merger {
   Merger& operator=(const Merger&) = delete;
 
   Result<RenderReport> Run(const std::vector<fs::path>& given) {
-    LF_ASSIGN_OR_RETURN(const std::vector<fs::path> files, FilesOf(given));
+    LF_ASSIGN_OR_RETURN(const std::vector<fs::path> files, PlateFilesOf(given));
     if (files.empty())
       return InputError(
           "no plates are given: expected plate files of {lfrenderer shard} or {keep_plates}, or "
           "folders with such files");
     for (const fs::path& file : files) {
       if (IsStopped()) return Interrupted();
-      LF_ASSIGN_OR_RETURN(ShardPlate plate, Look(file));
+      LF_ASSIGN_OR_RETURN(ShardPlate plate, LookAtPlate(file));
       frames_[plate.notes.frame].plates.push_back(std::move(plate));
     }
     LF_RETURN_IF_ERROR(CheckFrames());
@@ -212,14 +134,12 @@ class Merger {
 
   fs::path ReportPath() const { return options_.output_folder / "report.json"; }
 
-  // Checks that each shard of each frame exists exactly once, and that all are of the same render.
+  // Checks that the shards of each frame are there, and that all frames are of one film.
   Result<void> CheckFrames() {
     const ShardPlate& first = First();
     for (auto& [id, frame] : frames_) {
       std::vector<ShardPlate>& plates = frame.plates;
-      std::sort(plates.begin(), plates.end(), [](const ShardPlate& a, const ShardPlate& b) {
-        return a.shard.number < b.shard.number;
-      });
+      LF_RETURN_IF_ERROR(CheckShards(id, &plates));
       const ShardPlate& one = plates.front();
       if (one.width_px != first.width_px || one.height_px != first.height_px)
         return InputError(fmt::format(
@@ -230,44 +150,6 @@ class Merger {
         return InputError(fmt::format(
             "frame {}: {}: give plates of one light field only", id.value,
             difference->Text(one.path.string() + " was made with", first.path.string() + " with")));
-      std::set<uint32_t> there;
-      for (const ShardPlate& plate : plates) {
-        if (plate.shard.count != one.shard.count)
-          return InputError(fmt::format(
-              "frame {}: {} is shard {}, but {} is shard {}: give shards with the same K", id.value,
-              one.path.string(), one.shard.Text(), plate.path.string(), plate.shard.Text()));
-        if (!there.insert(plate.shard.number).second)
-          return InputError(
-              fmt::format("frame {}: {} is shard {}, and so is another file: give each shard once",
-                          id.value, plate.path.string(), plate.shard.Text()));
-        if (plate.width_px != one.width_px || plate.height_px != one.height_px)
-          return InputError(
-              fmt::format("frame {}: {} has {} x {} elements, but {} has {} x {}: give plates of "
-                          "one render only",
-                          id.value, one.path.string(), one.width_px, one.height_px,
-                          plate.path.string(), plate.width_px, plate.height_px));
-        if (plate.kind != one.kind || plate.has_gaps != one.has_gaps)
-          return InputError(fmt::format(
-              "frame {}: {} has {} channels and {}, but {} has {} and {}: render all shards of a "
-              "frame with the same program",
-              id.value, one.path.string(), static_cast<int>(one.kind), GapWords(one),
-              plate.path.string(), static_cast<int>(plate.kind), GapWords(plate)));
-        if (const auto difference = FirstDifference(plate.inputs, one.inputs))
-          return InputError(fmt::format(
-              "frame {}: {}: give only shards that were rendered with the same inputs and options",
-              id.value,
-              difference->Text(plate.path.string() + " was made with",
-                               one.path.string() + " with")));
-      }
-      std::vector<uint32_t> missing;
-      for (uint32_t k = 1; k <= one.shard.count && missing.size() < 10; ++k)
-        if (!there.contains(k)) missing.push_back(k);
-      if (!missing.empty())
-        return InputError(
-            fmt::format("frame {}: {} shards are expected, but {} are given; missing are {}{}: "
-                        "give their plates, or render them first",
-                        id.value, one.shard.count, there.size(), fmt::join(missing, ", "),
-                        one.shard.count - there.size() > missing.size() ? ", ..." : ""));
     }
     return {};
   }
@@ -287,10 +169,6 @@ class Merger {
     LogWarning("no plates are given for frames {}{}: the film is made without them",
                fmt::join(gaps.begin(), gaps.begin() + static_cast<std::ptrdiff_t>(said), ", "),
                gaps.size() > said ? ", ..." : "");
-  }
-
-  static const char* GapWords(const ShardPlate& plate) {
-    return plate.has_gaps ? "the gaps of its lens" : "no gaps of a lens";
   }
 
   // Warns if the plates of a hybrid do not say what completes them.
@@ -380,7 +258,7 @@ class Merger {
     Result<void> added = reader.AddTo(&sum->plate, is_stopped);
     if (added && reader.has_gaps()) added = reader.AddGapsTo(&sum->gaps, is_stopped);
     if (!added && added.error().kind == ErrorKind::kInterrupted) return Interrupted();
-    if (!added) return WithRemedy(added.error());
+    if (!added) return WithPlateRemedy(added.error());
     return {};
   }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Makes frames from plate files. If a render was divided into shards, adds the plates of all shards
 // of a frame: the frames are bit-identical to those of an undivided render. Also develops the
-// plates of lfrenderer --keep-plates again, with other options.
+// plates of lfrenderer --keep-plates again, with other options. Frames of hybrids are completed
+// from the gaps in their plates; if plates of a hybrid have none, the frames have collected rays
+// alone, and a warning says so.
 #pragma once
 
 #include <filesystem>
@@ -37,7 +39,8 @@ struct MergeProgress {
 };
 
 // Merges plates into frames. First reads and compares the entries (doc/formats/plate.md) of all
-// plate files. Then makes frames one by one, which needs the memory of one plate and its picture.
+// plate files. Then makes frames one by one, which needs the memory of one plate, the gaps of its
+// lens and its picture.
 // The file of a frame appears only when the frame is done. The report names the LF images that were
 // skipped when the plates were rendered, as far as the plates name them (plate_notes.h).
 // RenderReport::selected_image_count is the largest number of LF images that have a ray in a frame
@@ -51,9 +54,9 @@ struct MergeProgress {
 // video would lose frames; an output would replace a plate or one of kept_files; the same plate
 // file is listed twice. kInput: there are no plates; a plate has no notes
 // (render/state/plate_notes.h) or is damaged; a shard of a frame is missing or exists twice, or the
-// shards are of different renders (the message names them); every frame is black. kOutput: the disk
-// or ffmpeg failed, or another process writes frames into the folder. kInterrupted: frames that
-// were written before are kept.
+// shards are of different renders or have different gaps (the message names them); every frame is
+// black. kOutput: the disk or ffmpeg failed, or another process writes frames into the folder.
+// kInterrupted: frames that were written before are kept.
 Result<RenderReport> MergeShards(const std::vector<std::filesystem::path>& plates,
                                  const MergeOptions& options, ThreadPool& pool,
                                  const std::function<void(const MergeProgress&)>& progress);

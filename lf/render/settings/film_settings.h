@@ -55,8 +55,8 @@ struct FilmSettings {
   // with. Must be unset if KeepsCells() (interpolation.h).
   std::optional<size_t> max_image_count;
   // If set, frames take only the LF images of this shard. MergeShards() adds their plates to the
-  // plates of the other shards. Cannot be combined with rules that count rays or measure noise, nor
-  // with kHybrid, cells or KeptRays::kEdges.
+  // plates of the other shards, and the gaps of a hybrid to theirs. Cannot be combined with rules
+  // that count rays or measure noise, nor with cells or KeptRays::kEdges.
   std::optional<Shard> shard;
 
   // A frame is finished when this rule is met.
