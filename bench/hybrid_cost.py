@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Measures what rebinned rays cost: workloads of bench/workloads.py collected alone, and as hybrids.
+"""Measures what rebinned rays cost: workloads of bench/workloads.py collected alone, and as hybrids with kept pixels
+and with cells.
 
 usage: bench/hybrid_cost.py BUILD_DIR [--density 0.05] [--size 480x320] [--runs 5]
                             [--only stack,short,sharp,long,bokeh] [--frames-share 1] [--field DIR]
@@ -10,7 +11,7 @@ usage: bench/hybrid_cost.py BUILD_DIR [--density 0.05] [--size 480x320] [--runs 
 All five movements of Table 5.1 are rendered in turns, by one thread, so that a busy machine disturbs
 all alike. CPU seconds are those of the whole program. Each hybrid is compared with a collection by the same estimator
 and lens weights: those of the thesis (nearest, none), as in Table 5.2, and the defaults. ns per LF pixel is the time of
-rebinning for each LF pixel that it examined: for its probability, the choice, and the cell if it is kept.
+rebinning for each LF pixel that it examined: for its probability, the choice, and the cell or the pixel if it is kept.
 
 --frames-share S  render only this share of the frames of each movement, over the same path
 
@@ -28,14 +29,19 @@ import workloads
 DEFAULT = ("--estimator", "bilinear", "--filter", "mosaic", "--lens-weights", "auto")
 THESIS = ("--estimator", "nearest", "--lens-weights", "none")
 UNWEIGHTED = ("--estimator", "bilinear", "--filter", "mosaic", "--lens-weights", "none")
-# mode: the mode that it is compared with, and the options of lfrenderer
+CELLS = ("--interpolation", "cells")
+# mode: the mode that it is compared with, and the options of lfrenderer. Pictures of an unfinished render are previews
+# by cells alone.
 MODES = {
     "collect, thesis's estimator": (None, ("--mode", "collect", *THESIS)),
     "hybrid, thesis's estimator": ("collect, thesis's estimator", ("--mode", "hybrid", *THESIS)),
+    "hybrid, thesis's estimator, cells": ("collect, thesis's estimator", ("--mode", "hybrid", *CELLS, *THESIS)),
     "collect (the default)": (None, ("--mode", "collect", *DEFAULT)),
-    "hybrid": ("collect (the default)", ("--mode", "hybrid", "--preview", "auto", *DEFAULT)),
-    "hybrid, previews on": ("collect (the default)", ("--mode", "hybrid", "--preview", "on", *DEFAULT)),
-    "hybrid, a small lens": (None, ("--mode", "hybrid", "--preview", "auto", *UNWEIGHTED)),
+    "hybrid": ("collect (the default)", ("--mode", "hybrid", *DEFAULT)),
+    "hybrid, cells": ("collect (the default)", ("--mode", "hybrid", *CELLS, *DEFAULT)),
+    "hybrid, cells, previews on": ("collect (the default)", ("--mode", "hybrid", "--preview", "on", *DEFAULT)),
+    "hybrid, a small lens": (None, ("--mode", "hybrid", *UNWEIGHTED)),
+    "hybrid, a small lens, cells": (None, ("--mode", "hybrid", *CELLS, *UNWEIGHTED)),
 }
 # Table 5.2: minutes of "Ray Collect" and of "Ray Collect & Rebinning".
 THESIS_MINUTES = {"stack": (22 + 33 / 60, 23 + 38 / 60), "short": (36.5, 41 + 17 / 60),
@@ -51,7 +57,7 @@ def measure(build, field, folder, name, size, runs, frames_share):
         workload = dict(workloads.WORKLOADS[name], frames_share=frames_share)
         if "small" in row["mode"]:
             workload["aperture_mm"] = (0.5, 0.5)
-        row["path"] = folder / f"{len(row['mode'])}-{name}.yaml"
+        row["path"] = folder / f"{name}{'-small' if 'small' in row['mode'] else ''}.yaml"
         row["path"].write_text(workloads.path_yaml(workload, size))
     for _ in range(runs):
         for row in rows:
@@ -69,7 +75,7 @@ def measure(build, field, folder, name, size, runs, frames_share):
 
 def table(record):
     lines = ["| workload | mode | LF images | CPU s | to its collection (thesis) | LF pixels looked at | "
-             "ns each | cells | interpolated |", "| --- " * 9 + "|"]
+             "ns each | kept pixels or cells | interpolated |", "| --- " * 9 + "|"]
     cpu_s = {(row["workload"], row["mode"]): statistics.median(row["cpu_s"]) for row in record["rows"]}
     for row in record["rows"]:
         name, mode = row["workload"], row["mode"]

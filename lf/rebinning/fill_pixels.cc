@@ -8,84 +8,120 @@
 namespace lf {
 namespace {
 
-struct Level {
-  Image<float> values;  // means of the known pixels
-  Image<float> weight;  // 1: known, 0: not
-};
+// Number of times that an unknown pixel takes the mean of its neighbours, in each reduced picture.
+// Twice as many change frames by less than 0.1 dB, except for less light beside lamps.
+constexpr int kSweeps = 8;
 
-// Returns the level of half the width and height, rounded up.
-Level Reduced(const Image<float>& values, const Image<float>& weight) {
-  const int width = (values.width() + 1) / 2, height = (values.height() + 1) / 2;
-  const int channels = values.channels();
-  Level level{Image<float>(width, height, channels), Image<float>(width, height)};
-  for (int y = 0; y < values.height(); ++y)
-    for (int x = 0; x < values.width(); ++x) {
-      const float w = weight.at(x, y);
-      if (w == 0) continue;
-      level.weight.at(x / 2, y / 2) += w;
-      const float* const from = values.row(y) + static_cast<size_t>(x) * channels;
-      float* const to = level.values.row(y / 2) + static_cast<size_t>(x / 2) * channels;
-      for (int c = 0; c < channels; ++c) to[c] += w * from[c];
-    }
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      float& w = level.weight.at(x, y);
-      if (w == 0) continue;
-      float* const to = level.values.row(y) + static_cast<size_t>(x) * channels;
-      for (int c = 0; c < channels; ++c) to[c] /= w;
-      w = std::min(w, 1.0F);
-    }
-  return level;
+int Half(int size) { return (size + 1) / 2; }
+
+// Sums of 2 x 2 pixels.
+Image<float> Sums(const Image<float>& picture) {
+  Image<float> sums(Half(picture.width()), Half(picture.height()));
+  const int pairs = picture.width() / 2;
+  for (int y = 0; y < picture.height(); ++y) {
+    const float* const from = picture.row(y);
+    float* const to = sums.row(y / 2);
+    for (int x = 0; x < pairs; ++x) to[x] += from[2 * x] + from[2 * x + 1];
+    if (picture.width() % 2 != 0) to[pairs] += from[2 * pairs];
+  }
+  return sums;
 }
 
-// A place between two reduced pixels: the index of the first, and the part of the second.
-struct Between {
-  int first;
-  int second;
-  float part;
-};
-Between PlaceIn(int reduced_size, int place) {
-  const int first = (place + 1) / 2 - 1;
-  return {std::max(first, 0), std::min(first + 1, reduced_size - 1),
-          place % 2 == 0 ? 0.75F : 0.25F};
+// Returns the means of the known pixels of 2 x 2.
+//   counts  numbers of the known pixels
+Image<float> Means(const Image<float>& plane, const Image<float>& weight,
+                   const Image<float>& counts) {
+  Image<float> known(plane.width(), plane.height());
+  for (size_t i = 0; i < known.pixels().size(); ++i)
+    known.pixels()[i] = plane.pixels()[i] * weight.pixels()[i];
+  Image<float> means = Sums(known);
+  for (size_t i = 0; i < means.pixels().size(); ++i)
+    means.pixels()[i] /= std::max(counts.pixels()[i], 1.0F);
+  return means;
+}
+
+// Rows are mixed by products instead of choices, which compilers would not vectorize.
+
+// Gives each unknown pixel of a row the mean of its neighbours.
+//   row  [width + 2], a copy of the row between two more pixels
+void RelaxRow(const float* __restrict above, const float* __restrict below,
+              const float* __restrict row, const float* __restrict weight, int width,
+              float* __restrict to) {
+  for (int x = 0; x < width; ++x) {
+    const float mean = 0.25F * ((row[x] + row[x + 2]) + (above[x] + below[x]));
+    to[x] = weight[x] * row[x + 1] + (1 - weight[x]) * mean;
+  }
+}
+
+// Gives each unknown pixel of a row its value between reduced pixels.
+//   between  [Half(width) + 2], a row of reduced pixels between two more
+void TakeRow(const float* __restrict between, const float* __restrict weight, int width,
+             float* __restrict to) {
+  const int pairs = width / 2;
+  for (int i = 0; i < pairs; ++i) {
+    const float even = 0.25F * between[i] + 0.75F * between[i + 1];
+    const float odd = 0.75F * between[i + 1] + 0.25F * between[i + 2];
+    const float even_weight = weight[2 * i], odd_weight = weight[2 * i + 1];
+    to[2 * i] = even_weight * to[2 * i] + (1 - even_weight) * even;
+    to[2 * i + 1] = odd_weight * to[2 * i + 1] + (1 - odd_weight) * odd;
+  }
+  if (width % 2 != 0 && weight[width - 1] == 0)
+    to[width - 1] = 0.25F * between[pairs] + 0.75F * between[pairs + 1];
 }
 
 // Gives each unknown pixel the value of the reduced picture.
-void TakeFrom(const Image<float>& reduced, const Image<float>& weight, Image<float>* values) {
-  const int channels = values->channels();
-  for (int y = 0; y < values->height(); ++y) {
-    const Between down = PlaceIn(reduced.height(), y);
-    const float* const above = reduced.row(down.first);
-    const float* const below = reduced.row(down.second);
-    for (int x = 0; x < values->width(); ++x) {
-      const float w = weight.at(x, y);
-      if (w > 0) continue;
-      const Between across = PlaceIn(reduced.width(), x);
-      const size_t left = static_cast<size_t>(across.first) * channels;
-      const size_t right = static_cast<size_t>(across.second) * channels;
-      float* const to = values->row(y) + static_cast<size_t>(x) * channels;
-      for (int c = 0; c < channels; ++c) {
-        const float upper = above[left + c] + across.part * (above[right + c] - above[left + c]);
-        const float lower = below[left + c] + across.part * (below[right + c] - below[left + c]);
-        to[c] = upper + down.part * (lower - upper);
-      }
-    }
+void TakeFrom(const Image<float>& reduced, const Image<float>& weight, Image<float>* plane) {
+  std::vector<float> between(static_cast<size_t>(reduced.width()) + 2);  // with both borders
+  for (int y = 0; y < plane->height(); ++y) {
+    const float* const near = reduced.row(y / 2);
+    const float* const far =
+        reduced.row(std::clamp(y / 2 + (y % 2 == 0 ? -1 : 1), 0, reduced.height() - 1));
+    for (int x = 0; x < reduced.width(); ++x)
+      between[static_cast<size_t>(x) + 1] = 0.75F * near[x] + 0.25F * far[x];
+    between.front() = between[1];
+    between.back() = between[between.size() - 2];
+    TakeRow(between.data(), weight.row(y), plane->width(), plane->row(y));
   }
+}
+
+// Sweeps downwards and upwards in turns, so that values spread far in the direction of the sweep.
+void Relax(const Image<float>& weight, Image<float>* plane) {
+  const int width = plane->width(), height = plane->height();
+  std::vector<float> row(static_cast<size_t>(width) + 2);
+  for (int sweep = 0; sweep < kSweeps; ++sweep)
+    for (int i = 0; i < height; ++i) {
+      const int y = sweep % 2 == 0 ? i : height - 1 - i;
+      float* const to = plane->row(y);
+      std::copy_n(to, width, row.begin() + 1);
+      row.front() = row[1];
+      row.back() = row[static_cast<size_t>(width)];
+      RelaxRow(plane->row(std::max(y - 1, 0)), plane->row(std::min(y + 1, height - 1)), row.data(),
+               weight.row(y), width, to);
+    }
 }
 
 }  // namespace
 
-void FillPixels(Image<float>* values, const Image<float>& weight) {
-  LF_CHECK(values->width() == weight.width() && values->height() == weight.height());
-  if (std::all_of(weight.pixels().begin(), weight.pixels().end(), [](float w) { return w >= 1; }))
+void FillPixels(std::vector<Image<float>>* planes, const Image<float>& weight) {
+  if (std::all_of(weight.pixels().begin(), weight.pixels().end(), [](float w) { return w > 0; }))
     return;
-  if (values->width() == 1 && values->height() == 1) {
-    if (weight.at(0, 0) == 0) std::fill(values->pixels().begin(), values->pixels().end(), 0.0F);
+  if (weight.width() == 1 && weight.height() == 1) {
+    for (Image<float>& plane : *planes) plane.at(0, 0) = 0;
     return;
   }
-  Level reduced = Reduced(*values, weight);
-  FillPixels(&reduced.values, reduced.weight);
-  TakeFrom(reduced.values, weight, values);
+  const Image<float> counts = Sums(weight);
+  Image<float> reduced_weight = counts;
+  for (float& w : reduced_weight.pixels()) w = std::min(w, 1.0F);
+  std::vector<Image<float>> reduced;
+  for (const Image<float>& plane : *planes) {
+    LF_CHECK(plane.width() == weight.width() && plane.height() == weight.height());
+    reduced.push_back(Means(plane, weight, counts));
+  }
+  FillPixels(&reduced, reduced_weight);
+  for (size_t i = 0; i < planes->size(); ++i) {
+    TakeFrom(reduced[i], weight, &(*planes)[i]);
+    Relax(weight, &(*planes)[i]);
+  }
 }
 
 }  // namespace lf

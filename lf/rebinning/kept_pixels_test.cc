@@ -195,6 +195,26 @@ TEST(KeptPixels, EvenPartsFarFromEdgesAreFilled) {
     }
 }
 
+TEST(KeptPixels, LightIsInterpolatedByItsSquareRootAndTrustAsItIs) {
+  ThreadPool pool(1);
+  KeptImage image;
+  image.width_px = 3;
+  image.height_px = 1;
+  image.has_trust = true;
+  image.is_sparse = true;
+  image.rect = {0, 0, 3, 1};
+  image.places = {0, 2};
+  image.values = {0, 2500, 10000, 0, 40000, 2500, 10000, 200};
+  KeptPixels kept(10);
+  kept.Add({image}, pool);
+  LfPixels loaded;
+  kept.Load(LfImageId{}, image.rect, &loaded);
+  EXPECT_NEAR(loaded.radiance.at(1, 0, 0), 100 * 100, 100);
+  EXPECT_NEAR(loaded.radiance.at(1, 0, 1), 2500, 1);
+  EXPECT_NEAR(loaded.radiance.at(1, 0, 2), 10000, 1);
+  EXPECT_NEAR(loaded.trust.at(1, 0), 100, 1);
+}
+
 TEST(KeptPixels, ThoseThatAreDroppedDependOnNoOrder) {
   std::vector<KeptImage> images;
   for (uint32_t id = 0; id < 12; ++id)
