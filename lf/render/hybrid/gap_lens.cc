@@ -3,41 +3,65 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
-#include <utility>
+#include <optional>
+#include <span>
+#include <vector>
 
 #include "lf/camera/aperture.h"
 #include "lf/camera/ray_through.h"
 #include "lf/render/collect/around_lens.h"
+#include "lf/selection/lens_weights/covered_region.h"
 #include "lf/selection/lens_weights/image_feather.h"
+#include "lf/selection/lens_weights/lens_coverage.h"
 
 namespace lf {
 namespace {
 
-// An LF camera near the lens.
-struct NearCamera {
-  RayThrough ray;
-  RayWeights collected;  // weights of the rays that are collected; none: the LF image is not
-};
+// Rises smoothly from 0 at `from` to 1 at `to`.
+double SmoothStep(double value, double from, double to) {
+  const double t = std::clamp((value - from) / (to - from), 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
 
 // Finds the places of the lens that are not covered.
 class GapFinder {
  public:
-  GapFinder(const RenderCamera& frame, std::vector<NearCamera> cameras, bool tests_opening,
-            double camera_distance_w)
+  //   near       LF cameras near the lens, sorted
+  //   collected  the lens with which the frame collects rays
+  GapFinder(const LightField& light_field, const RenderCamera& frame,
+            std::span<const LfImageId> near, const FrameLens& collected, double camera_distance_w)
       : frame_(frame),
-        cameras_(std::move(cameras)),
+        plane_(frame),
+        collected_(collected),
         opening_(frame.aperture),
-        tests_opening_(tests_opening) {
+        hat_share_(collected.weights() != nullptr ? collected.weights()->hat_share() : 0),
+        has_same_places_(!frame.hood.exists() && !frame.transmission) {
+    std::vector<Vec2> points;
+    const Intrinsics& plate = frame.pinhole.intrinsics;
+    const std::optional<Vec3> middle =
+        FocusPointOfElement(frame, 0.5 * plate.width_px, 0.5 * plate.height_px);
+    for (const LfImageId id : near) {
+      const PinholeCamera lf_camera = light_field.Camera(id);
+      cameras_.push_back({RayThrough(lf_camera, frame.pinhole.ForwardWorld()), collected.Takes(id),
+                          collected.IndexOf(id)});
+      if (!middle) continue;
+      const Vec2 point = plane_.PointOfLine(cameras_.back().ray.centre_world(), *middle);
+      if (point.allFinite()) points.push_back(point);
+    }
+    neighbour_distance_w_ = DistanceOfMost(points);
     const double places_w = std::sqrt(Area(frame.aperture) / GapLens::kPlaces);
     near_w_ = std::max(GapLens::kCoveredDistances * camera_distance_w, places_w);
     farthest_w_ = std::max(GapLens::kFarthestDistances * camera_distance_w, near_w_);
+    edge_w_ = std::max(places_w, GapLens::kLeastEdge_distances * camera_distance_w);
+    if (has_same_places_) same_places_ = OpenPlaces(frame, Vec3::Zero(), GapLens::kPlaces);
   }
 
   LensPart PartAt(double x_px, double y_px, const Vec3& focus_world) const {
     LensPart part;
-    std::vector<LensPlace>& places = part.places;
-    places = OpenPlaces(frame_, focus_world, GapLens::kPlaces);
+    const std::vector<LensPlace> places =
+        has_same_places_ ? same_places_ : OpenPlaces(frame_, focus_world, GapLens::kPlaces);
     double sum = 0;
     for (const LensPlace& place : places) sum += place.weight;
     if (!(sum > 0)) return part;
@@ -48,39 +72,90 @@ class GapFinder {
     part.sees.assign(cameras_.size(), false);
     for (size_t i = 0; i < cameras_.size(); ++i) {
       const NearCamera& camera = cameras_[i];
-      const Vec2 through = LensPointOfLine(frame_, camera.ray.centre_world(), focus_world);
+      const Vec2 through = plane_.PointOfLine(camera.ray.centre_world(), focus_world);
       if (!through.allFinite() || !IsSeenBy(camera.ray, focus_world)) continue;
       seen.push_back(through);
       part.sees[i] = true;
-      const bool is_collected = !camera.collected.are_none() &&
-                                (!tests_opening_ || opening_.Contains(through)) &&
-                                camera.collected.At(x, y) > 0;
-      if (is_collected) collected.push_back(through);
+      if (IsCollected(camera, through, x, y)) collected.push_back(through);
     }
-    const auto is_within = [](const std::vector<Vec2>& points, const Vec2& place, double reach_w) {
-      return std::any_of(points.begin(), points.end(), [&](const Vec2& point) {
-        return (point - place).squaredNorm() <= reach_w * reach_w;
-      });
-    };
+    if (seen.empty()) return part;
+    // LF cameras on one place represent the whole lens.
+    const CoveredRegion region = neighbour_distance_w_ > 0
+                                     ? CoveredRegion(seen, neighbour_distance_w_ / 2)
+                                     : CoveredRegion();
     double missing = 0;
-    std::erase_if(places, [&](LensPlace& place) {
-      if (is_within(collected, place.place, near_w_)) return true;
-      if (!is_within(seen, place.place, farthest_w_)) return true;
-      place.weight /= sum;
-      missing += place.weight;
-      return false;
-    });
-    if (missing <= GapLens::kLittleMissing) places.clear();
+    for (const LensPlace& place : places) {
+      const double beyond = PastEdge(region.Beyond_w(place.place));
+      const double share =
+          place.weight / sum * MissingOf(NearestOf(collected, place.place), beyond);
+      if (!(share > 0) || NearestOf(seen, place.place) > farthest_w_) continue;
+      missing += share;
+      if (beyond < 1) part.between.push_back({place.place, (1 - beyond) * share});
+      if (beyond > 0) part.beyond.push_back({place.place, beyond * share});
+    }
+    const double factor = SmoothStep(missing, GapLens::kNothingMissing, GapLens::kLittleMissing);
+    if (factor == 0) return {};
+    part.spread_w = GapLens::kSpread_distances * neighbour_distance_w_;
+    for (std::vector<LensPlace>* const of_kind : {&part.between, &part.beyond})
+      for (LensPlace& place : *of_kind) place.weight *= factor;
     return part;
   }
 
  private:
+  // An LF camera near the lens.
+  struct NearCamera {
+    RayThrough ray;
+    bool is_taken;                // false: none of its rays is collected
+    std::optional<size_t> index;  // in the weights of collected rays
+  };
+
+  bool IsCollected(const NearCamera& camera, const Vec2& through, int x, int y) const {
+    if (!camera.is_taken) return false;
+    if (collected_.tests_opening() && !opening_.Contains(through)) return false;
+    const FrameWeights* const weights = collected_.weights();
+    return weights == nullptr || (camera.index && weights->At(*camera.index, x, y) > 0);
+  }
+
+  // Returns the distance to the nearest point; infinity if there is none. Distances at which all is
+  // covered are not told from each other.
+  double NearestOf(const std::vector<Vec2>& points, const Vec2& place) const {
+    const double surely_w = near_w_ - 0.5 * edge_w_;
+    const double surely_w2 = surely_w > 0 ? surely_w * surely_w : 0;
+    double nearest_w2 = std::numeric_limits<double>::infinity();
+    for (const Vec2& point : points) {
+      nearest_w2 = std::min(nearest_w2, (point - place).squaredNorm());
+      if (nearest_w2 <= surely_w2) break;
+    }
+    return std::sqrt(nearest_w2);
+  }
+
+  // Rises from 0 to 1 across an edge that is passed at 0. An edge is as wide as the part of the
+  // lens that a place stands for, so that frames change smoothly while a lens grows.
+  double PastEdge(double distance_w) const {
+    return std::clamp(0.5 + distance_w / edge_w_, 0.0, 1.0);
+  }
+
+  // Returns the share of a place that no collected ray stands for.
+  //   nearest_w  distance to the nearest collected ray
+  //   beyond     0 to 1: how far the place is past the edge of the capture
+  double MissingOf(double nearest_w, double beyond) const {
+    if (std::isinf(nearest_w)) return 1;
+    // Hats stand for the whole lens, wherever it is.
+    return (1 - hat_share_) * std::max(beyond, PastEdge(nearest_w - near_w_));
+  }
+
   const RenderCamera& frame_;
-  const std::vector<NearCamera> cameras_;
+  const LensPlane plane_;
+  const FrameLens& collected_;
   const ApertureTest opening_;
-  const bool tests_opening_;
+  const double hat_share_;
+  const bool has_same_places_;  // true: every element sees same_places_
+  std::vector<LensPlace> same_places_;
+  std::vector<NearCamera> cameras_;
+  double neighbour_distance_w_;
   double near_w_;
   double farthest_w_;
+  double edge_w_;
 };
 
 }  // namespace
@@ -99,14 +174,8 @@ GapLens::GapLens(const ImageIndex& index, const RenderCamera& frame, const Frame
   std::sort(near_.begin(), near_.end());
   if (near_.empty()) return;
   std::vector<Vec3> centres_world;
-  std::vector<NearCamera> cameras;
-  for (const LfImageId id : near_) {
-    const PinholeCamera lf_camera = light_field_.Camera(id);
-    centres_world.push_back(lf_camera.CentreWorld());
-    cameras.push_back(
-        {RayThrough(lf_camera, frame.pinhole.ForwardWorld()), collected.WeightsOf(id)});
-  }
-  const GapFinder gaps(frame, std::move(cameras), collected.tests_opening(), distance_w);
+  for (const LfImageId id : near_) centres_world.push_back(light_field_.Camera(id).CentreWorld());
+  const GapFinder gaps(light_field_, frame, near_, collected, distance_w);
   weights_.emplace(
       frame, centres_world,
       [&gaps](double x_px, double y_px, const Vec3& focus_world) {

@@ -3,12 +3,19 @@
 // cameras around it complete the frame from kept pixels (thesis 4.3.3). Needs only the calibration
 // of the LF cameras, so that it is known before an LF image is read.
 //
-// The opening is represented by places spread over it. A place is *covered* for an element if a
-// collected LF image has a ray that lands in the element and passes the lens plane near the place:
-// within kCoveredDistances times the distance between LF cameras, or within the distance between
-// places, whichever is larger. The places that are not covered make the gap, unless no LF camera
-// within kFarthestDistances of them sees the element. Gaps occur if an aperture is larger than the
-// captured band, and if a small aperture lies between LF cameras.
+// The opening is represented by places spread over it. A place is *covered* for an element if
+// collected LF images stand for it:
+// - it lies within the region that the LF cameras that see the element cover (CoveredRegion), and
+// - a collected LF image has a ray that lands in the element and passes the lens plane near the
+//   place: within kCoveredDistances times the distance between LF cameras, or within the distance
+//   between places, whichever is larger.
+// If the frame has hat weights, its rays stand for all of the lens, in so far as they are hats. The
+// places that are not covered make the gap, unless no LF camera within kFarthestDistances of them
+// sees the element. Gaps occur if an aperture is larger than the captured band, and if a small
+// aperture lies between LF cameras. Places of a gap that lie between LF cameras are interpolated by
+// natural neighbours; places beyond the capture take the light of the LF cameras at its edge.
+//
+// All edges are soft, so that nothing jumps while a lens grows or moves.
 #pragma once
 
 #include <cstdint>
@@ -33,8 +40,16 @@ class GapLens {
   static constexpr double kCoveredDistances = 1.5;
   static constexpr double kFarthestDistances = 8;
   static constexpr int kPlaces = 64;  // number of places of the opening
-  // An element has no gap if at most this share of its places is not covered.
+  // An element has no gap if at most the share kNothingMissing of its places is not covered. From
+  // there to kLittleMissing, the gap grows from nothing to the whole part that is not covered.
+  static constexpr double kNothingMissing = 0.02;
   static constexpr double kLittleMissing = 0.1;
+  // Least width of the edge between places that are covered and others, in camera distances.
+  static constexpr double kLeastEdge_distances = 0.25;
+  // Sigma of the Gaussian by which places beyond the capture are divided among the LF cameras, in
+  // distances between most neighbours (DistanceOfMost()). Half as much is as good. Sigmas that grow
+  // with the distance from the capture, as those of cells do, lose up to 0.9 dB.
+  static constexpr double kSpread_distances = 0.5;
 
   // The object refers to the light field of `index`.
   //   collected          the lens with which the frame collects rays

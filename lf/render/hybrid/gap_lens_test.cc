@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "lf/render/hybrid/test_grid.h"
 
 namespace lf {
@@ -59,14 +61,30 @@ TEST(GapLens, ALensHigherThanTheCaptureIsCompletedByItsEdges) {
     const Gap high(Grid(4), Frame(0.05), weights);
     ASSERT_TRUE(high.gap.exists());
     const double share = high.gap.ShareAt(40, 30);
-    EXPECT_GT(share, 0.2);
-    EXPECT_LT(share, 0.5);
+    // The part of the disk that is more than half a camera distance above or below the rows.
+    const double covered = std::asin(0.02 / 0.05) + 0.4 * std::sqrt(1 - 0.16);
+    EXPECT_NEAR(share, 1 - 2 / kPi * covered, 0.03);
     EXPECT_NEAR(high.SumAt(40, 30) / high.gap.WeightsPerShare(), share, 0.03);
     // The two rows at the edges take nearly all of it.
     double edges = 0;
     for (const LfImageId id : high.gap.images())
       if (id.value < 12 || id.value >= 36) edges += high.gap.WeightsOf(id).At(40, 30);
     EXPECT_GT(edges / high.SumAt(40, 30), 0.9);
+  }
+}
+
+// No step of a film shows: a lens grows by less than 1 % from frame to frame.
+TEST(GapLens, TheGapGrowsSmoothlyWithTheLens) {
+  for (const LensWeights weights : {LensWeights::kNone, LensWeights::kAuto}) {
+    double before = 0;
+    for (double radius_w = 0.018; radius_w < 0.05; radius_w *= 1.009) {
+      const Gap high(Grid(4), Frame(radius_w), weights);
+      const double share = high.gap.exists() ? high.gap.ShareAt(40, 30) : 0;
+      EXPECT_GE(share, before - 0.003) << radius_w;
+      EXPECT_LE(share, before + 0.025) << radius_w;
+      before = share;
+    }
+    EXPECT_GT(before, 0.4);
   }
 }
 

@@ -45,6 +45,13 @@ bool CoveredRegion::ContainsDisk(const Vec2& middle, double radius_w) const {
   });
 }
 
+double CoveredRegion::Beyond_w(const Vec2& place) const {
+  double beyond_w = -std::numeric_limits<double>::infinity();
+  for (const Side& side : sides_)
+    beyond_w = std::max(beyond_w, side.normal.dot(place) - side.offset_w);
+  return beyond_w;
+}
+
 double CoveredRegion::LargestRadius_w() const {
   double radius_w = std::numeric_limits<double>::infinity();
   for (const Side& side : sides_) radius_w = std::min(radius_w, side.offset_w);

@@ -27,6 +27,9 @@ class CoveredRegion {
   // Replaces the polygon by its exact intersection with the region.
   void Clip(ConvexPolygon* polygon) const;
   bool Contains(const Vec2& place) const;
+  // Returns how far a place is beyond the side that it is farthest beyond; below 0 inside the
+  // region, and minus infinity if the region is the whole plane.
+  double Beyond_w(const Vec2& place) const;
   bool ContainsDisk(const Vec2& middle, double radius_w) const;
 
   // Returns the radius of the largest disk around the lens centre that is within the region: 0 if

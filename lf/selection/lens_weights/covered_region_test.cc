@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "lf/core/random.h"
@@ -60,6 +61,15 @@ TEST(CoveredRegion, ContainsEveryPointOfACloudAndNotMuchMore) {
     EXPECT_FALSE(region.Contains(point.normalized() * 1.001));
   }
   EXPECT_NEAR(AreaWithin(region, 2), kPi, 0.1);
+}
+
+TEST(CoveredRegion, TellsHowFarAPlaceIsBeyondItsSides) {
+  const std::vector<Vec2> square = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+  const CoveredRegion region(square, 0.5);
+  EXPECT_NEAR(region.Beyond_w({0, 0}), -1.5, 1e-12);
+  EXPECT_NEAR(region.Beyond_w({1.25, 0.3}), -0.25, 1e-12);
+  EXPECT_NEAR(region.Beyond_w({-4, 2}), 2.5, 1e-12);
+  EXPECT_EQ(CoveredRegion().Beyond_w({9, 9}), -std::numeric_limits<double>::infinity());
 }
 
 }  // namespace

@@ -154,6 +154,12 @@ struct PartialLens {
   std::vector<LensPlace> places;  // spread evenly over the opening
 };
 
+double SumOf(std::span<const LensPlace> places) {
+  double sum = 0;
+  for (const LensPlace& place : places) sum += place.weight;
+  return sum;
+}
+
 double NodePosition(int index, int count, int size_px) {
   return count == 1 ? 0.5 * size_px : static_cast<double>(index) * size_px / (count - 1);
 }
@@ -267,8 +273,8 @@ FrameWeights::Node FrameWeights::MakeNodeOfPart(const RenderCamera& frame,
   const std::optional<Vec3> focus = FocusPointOfElement(frame, x, y);
   if (!focus) return shares_of_node;
   const LensPart part = part_of(x, y, *focus);
-  double sum = 0;
-  for (const LensPlace& place : part.places) sum += place.weight;
+  const double between = SumOf(part.between), beyond = SumOf(part.beyond);
+  const double sum = between + beyond;
   if (!(sum > 0)) return shares_of_node;
   parts_[node] = static_cast<float>(std::min(sum, 1.0));
   const LensPoints all = PointsAt(frame, centres_world, *focus);
@@ -278,10 +284,13 @@ FrameWeights::Node FrameWeights::MakeNodeOfPart(const RenderCamera& frame,
     seen.points.push_back(all.points[k]);
     seen.cameras.push_back(all.cameras[k]);
   }
-  const std::vector<double> shares = HatShares(seen.points, part.places);
-  for (size_t k = 0; k < shares.size(); ++k)
-    if (shares[k] > kLeastShare)
-      shares_of_node.push_back({seen.cameras[k], sum * shares[k], seen.points[k].norm()});
+  const std::vector<double> of_between = HatShares(seen.points, part.between);
+  const std::vector<double> of_beyond = SpreadShares(seen.points, part.beyond, part.spread_w);
+  for (size_t k = 0; k < seen.points.size(); ++k) {
+    const double share = between * of_between[k] + beyond * of_beyond[k];
+    if (share > kLeastShare)
+      shares_of_node.push_back({seen.cameras[k], share, seen.points[k].norm()});
+  }
   return shares_of_node;
 }
 

@@ -43,10 +43,13 @@ inline constexpr double kHatsUpTo = 1;
 inline constexpr double kCellsFrom = 1.75;
 double AutoHatShare(double diameter_w, double camera_distance_w);
 
-// A part of the opening, as it is seen from one element.
+// A part of the opening, as it is seen from one element. The sum of the weights of all places is
+// the part's share of the lens: <= 1.
 struct LensPart {
-  std::vector<LensPlace> places;  // the sum of their weights is the part's share of the lens: <= 1
-  std::vector<bool> sees;         // [camera]: false if the LF camera does not see the element
+  std::vector<LensPlace> between;  // places between LF cameras
+  std::vector<LensPlace> beyond;   // places beyond all LF cameras
+  double spread_w = 0;             // above 0 if there are places beyond
+  std::vector<bool> sees;          // [camera]: false if the LF camera does not see the element
 };
 
 class FrameWeights {
@@ -58,8 +61,10 @@ class FrameWeights {
   FrameWeights(const RenderCamera& frame, std::span<const Vec3> centres_world, LensWeights kind,
                ThreadPool& pool, bool are_brackets = false);
 
-  // Makes the weights of a part of the opening, which differs from element to element: the mean
-  // natural-neighbour weights (HatShares()) of its places, times the sum of their weights.
+  // Makes the weights of a part of the opening, which differs from element to element: the sum of
+  // its places' weights, divided among the LF cameras. Those of places between LF cameras are
+  // divided by natural neighbours (HatShares()), and those of places beyond by a Gaussian with the
+  // sigma spread_w (SpreadShares()).
   //   part_of  returns the part as it is seen from the position (x, y) on the plate, which has the
   //            focus point `focus_world`. Called by several threads at the same time
   using PartOfLens = std::function<LensPart(double x_px, double y_px, const Vec3& focus_world)>;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "lf/core/check.h"
@@ -213,6 +214,35 @@ std::vector<double> HatShares(std::span<const Vec2> points, std::span<const Lens
   for (const LensPlace& place : places) sum += place.weight;
   HatMaker hats(points);
   for (const LensPlace& place : places) hats.AddAt(place.place, place.weight / sum, &shares);
+  return shares;
+}
+
+std::vector<double> SpreadShares(std::span<const Vec2> points, std::span<const LensPlace> places,
+                                 double spread_w) {
+  std::vector<double> shares(points.size(), 0);
+  if (points.empty() || places.empty()) return shares;
+  LF_CHECK(spread_w > 0);
+  // Points whose weight is less than e^-kFew of the nearest one's are left out.
+  constexpr double kFew = 12;
+  const double few_w2 = kFew * 2 * spread_w * spread_w;
+  double sum = 0;
+  for (const LensPlace& place : places) sum += place.weight;
+  std::vector<double> of_place(points.size());  // squared distances, then weights
+  for (const LensPlace& place : places) {
+    double nearest_w2 = std::numeric_limits<double>::infinity();
+    for (size_t i = 0; i < points.size(); ++i) {
+      of_place[i] = (points[i] - place.place).squaredNorm();
+      nearest_w2 = std::min(nearest_w2, of_place[i]);
+    }
+    double total = 0;
+    for (double& weight : of_place) {
+      const double more_w2 = weight - nearest_w2;
+      weight = more_w2 > few_w2 ? 0 : std::exp(-kFew * more_w2 / few_w2);
+      total += weight;
+    }
+    const double scale = place.weight / (sum * total);
+    for (size_t i = 0; i < points.size(); ++i) shares[i] += scale * of_place[i];
+  }
   return shares;
 }
 

@@ -58,4 +58,11 @@ struct LensPlace {
 };
 std::vector<double> HatShares(std::span<const Vec2> points, std::span<const LensPlace> places);
 
+// Returns, for each point, its weight as a weighted mean over these places, which lie beyond the
+// points. Each place is divided by a Gaussian around it with the sigma spread_w, so that the points
+// nearest to it share it. (Natural neighbours would give a place far beyond the points weights of
+// many of them.) The sum is 1 if there are points and places.
+std::vector<double> SpreadShares(std::span<const Vec2> points, std::span<const LensPlace> places,
+                                 double spread_w);
+
 }  // namespace lf

@@ -306,5 +306,29 @@ TEST(HatShares, BesideAllCamerasTheNearestOnesShare) {
   EXPECT_TRUE(HatShares({}, kPinhole).empty());
 }
 
+TEST(SpreadShares, APlaceIsDividedByAGaussian) {
+  const std::vector<Vec2> points = {{0, 0}, {1, 0}, {0, -1}, {1, 0}};
+  const std::vector<LensPlace> places = {{{0.2, 1}, 3}, {{0.2, 1}, 1}};
+  const auto shares = SpreadShares(points, places, 0.7);
+  EXPECT_NEAR(Sum(shares), 1, 1e-12);
+  for (size_t i = 0; i < points.size(); ++i)
+    EXPECT_NEAR(shares[i] / shares[0],
+                std::exp((places[0].place.squaredNorm() -
+                          (points[i] - places[0].place).squaredNorm()) /
+                         (2 * 0.7 * 0.7)),
+                1e-12);
+}
+
+TEST(SpreadShares, FarBeyondThePointsTheNearestTakesAll) {
+  const std::vector<Vec2> points = {{0, 0}, {1, 0}, {0, 1}};
+  const auto shares = SpreadShares(points, std::vector<LensPlace>{{{0, -500}}, {{400, 0}, 3}}, 0.5);
+  const double second = std::exp(-1 / (2 * 0.5 * 0.5));  // at (0, -500), of (1, 0)
+  EXPECT_NEAR(shares[0], 0.25 / (1 + second), 1e-12);
+  EXPECT_NEAR(shares[1], 0.75 + 0.25 * second / (1 + second), 1e-12);
+  EXPECT_EQ(shares[2], 0);
+  EXPECT_EQ(Sum(SpreadShares(points, {}, 0.5)), 0);
+  EXPECT_TRUE(SpreadShares({}, std::vector<LensPlace>{{}}, 0.5).empty());
+}
+
 }  // namespace
 }  // namespace lf
