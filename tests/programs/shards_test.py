@@ -32,8 +32,8 @@ def digests(folder, pattern="frame_*.exr"):
 
 
 def after_rays(plate, at):
-    """Returns where the rays of a plate, of one chunk and without wide words, end in a plate file (doc/formats/plate.md)
-    if they begin at `at`."""
+    """Returns where the rays of a plate, of one chunk and without wide words, end in a plate file if they begin at `at`
+    (doc/formats/plate.md)."""
     return at + 16 + struct.unpack_from("<I", plate, at)[0] + 8
 
 
@@ -292,12 +292,12 @@ class ShardsTest(ProgramTestCase):
         plate = plates / "shard_1_of_2" / "frame_0001.plate"
         whole = plate.read_bytes()
         plate.write_bytes(without_gaps(whole))
-        self.fails(3, ["shard_1_of_2/frame_0001.plate has 3 channels and no gaps of a lens, but", "shard_2_of_2"], MERGE,
-                   plates, "-o", self.folder / "no")
+        self.fails(3, ["shard_1_of_2/frame_0001.plate has 3 channels and no gaps of a lens, but", "shard_2_of_2"],
+                   MERGE, plates, "-o", self.folder / "no")
         self.assertFalse((self.folder / "no").exists())
         plate.write_bytes(with_shares_of_0(whole))
-        self.fails(3, ["shard_2_of_2/frame_0001.plate", "the gaps of its lens have a share of", "but 0 in the plates before",
-                       "render it again"], MERGE, plates, "-o", self.folder / "no")
+        self.fails(3, ["shard_2_of_2/frame_0001.plate", "the gaps of its lens have a share of",
+                       "but 0 in the plates before", "render it again"], MERGE, plates, "-o", self.folder / "no")
         self.assertFalse(list((self.folder / "no").glob("frame_*")))
         plate.write_bytes(whole)
         self.assertEqual(len(self.merge("merged", plates)), 3)
@@ -307,7 +307,8 @@ class ShardsTest(ProgramTestCase):
         small_field.write_path(self.folder, aperture=0.06)
         for way, is_told in (("cells", True), ("pixels", False)):
             self.render(way, "--mode", "hybrid", "--interpolation", way, "--keep-plates")
-            result = self.call(MERGE, *sorted((self.folder / way).glob("*.plate")), "-o", self.folder / (way + "-again"))
+            plates = sorted((self.folder / way).glob("*.plate"))
+            result = self.call(MERGE, *plates, "-o", self.folder / (way + "-again"))
             self.assertEqual(result.returncode, 0, result.stderr)
             self.assertEqual("has collected rays only" in result.stderr, is_told, result.stderr)
         self.assertNotEqual(digests(self.folder / "cells"), digests(self.folder / "cells-again"))
@@ -315,8 +316,9 @@ class ShardsTest(ProgramTestCase):
     def test_a_shard_whose_pixels_do_not_fit_is_refused(self):
         small_field.write_path(self.folder, aperture=0.06)
         for mode, words in (("rebin", "frames ask"), ("hybrid", "gaps of lenses ask")):
-            self.fails(2, ["--shard", f"--mode {mode}", words, "--max-rays 1000", "use more shards"], RENDERER, self.field,
-                       self.path, "-o", self.folder / "no", "--shard", "1/2", "--mode", mode, "--max-rays", "1000")
+            self.fails(2, ["--shard", f"--mode {mode}", words, "--max-rays 1000", "use more shards"], RENDERER,
+                       self.field, self.path, "-o", self.folder / "no", "--shard", "1/2", "--mode", mode,
+                       "--max-rays", "1000")
 
     def test_what_shards_cannot_do_is_refused(self):
         for options in (["--mode", "hybrid", "--kept", "edges"], ["--mode", "hybrid", "--interpolation", "cells"],
