@@ -25,6 +25,29 @@ double SmoothStep(double value, double from, double to) {
   return t * t * (3 - 2 * t);
 }
 
+// Returns points that have the same convex hull, without most of those inside it: those within the
+// polygon of the extreme points in eight directions. Quicker than sorting all points.
+std::vector<Vec2> OuterPoints(std::span<const Vec2> points) {
+  constexpr int kDirections = 8;
+  const Vec2 directions[kDirections] = {{1, 0},  {1, 1},   {0, 1},  {-1, 1},
+                                        {-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
+  Vec2 corners[kDirections + 1];
+  for (int k = 0; k < kDirections; ++k)
+    corners[k] = *std::max_element(points.begin(), points.end(), [&](const Vec2& a, const Vec2& b) {
+      return directions[k].dot(a) < directions[k].dot(b);
+    });
+  corners[kDirections] = corners[0];
+  std::vector<Vec2> outer(corners, corners + kDirections);
+  for (const Vec2& point : points)
+    for (int k = 0; k < kDirections; ++k)
+      if (corners[k] != corners[k + 1] &&
+          Cross(corners[k + 1] - corners[k], point - corners[k]) <= 0) {
+        outer.push_back(point);
+        break;
+      }
+  return outer;
+}
+
 // Finds the places of the lens that are not covered.
 class GapFinder {
  public:
@@ -69,6 +92,8 @@ class GapFinder {
     const int x = std::clamp(static_cast<int>(x_px), 0, plate.width_px - 1);
     const int y = std::clamp(static_cast<int>(y_px), 0, plate.height_px - 1);
     std::vector<Vec2> seen, collected;
+    seen.reserve(cameras_.size());
+    collected.reserve(cameras_.size());
     part.sees.assign(cameras_.size(), false);
     for (size_t i = 0; i < cameras_.size(); ++i) {
       const NearCamera& camera = cameras_[i];
@@ -81,17 +106,21 @@ class GapFinder {
     if (seen.empty()) return part;
     // LF cameras on one place represent the whole lens.
     const CoveredRegion region = neighbour_distance_w_ > 0
-                                     ? CoveredRegion(seen, neighbour_distance_w_ / 2)
+                                     ? CoveredRegion(OuterPoints(seen), neighbour_distance_w_ / 2)
                                      : CoveredRegion();
     double missing = 0;
     for (const LensPlace& place : places) {
       const double beyond = PastEdge(region.Beyond_w(place.place));
-      const double share =
-          place.weight / sum * MissingOf(NearestOf(collected, place.place), beyond);
-      if (!(share > 0) || NearestOf(seen, place.place) > farthest_w_) continue;
+      const double far = PastEdge(NearestOf(collected, place.place) - near_w_);
+      // Hats stand for the whole lens, wherever it is.
+      const double missing_part = collected.empty() ? 1 : (1 - hat_share_) * std::max(beyond, far);
+      if (!(missing_part > 0) || NearestOf(seen, place.place) > farthest_w_) continue;
+      const double share = place.weight / sum * missing_part;
       missing += share;
-      if (beyond < 1) part.between.push_back({place.place, (1 - beyond) * share});
-      if (beyond > 0) part.beyond.push_back({place.place, beyond * share});
+      // Natural neighbours take long. They are for places that are far from collected rays.
+      const double between = far > 0 ? 1 - beyond : 0;
+      if (between > 0) part.between.push_back({place.place, between * share});
+      if (between < 1) part.beyond.push_back({place.place, (1 - between) * share});
     }
     const double factor = SmoothStep(missing, GapLens::kNothingMissing, GapLens::kLittleMissing);
     if (factor == 0) return {};
@@ -133,15 +162,6 @@ class GapFinder {
   // lens that a place stands for, so that frames change smoothly while a lens grows.
   double PastEdge(double distance_w) const {
     return std::clamp(0.5 + distance_w / edge_w_, 0.0, 1.0);
-  }
-
-  // Returns the share of a place that no collected ray stands for.
-  //   nearest_w  distance to the nearest collected ray
-  //   beyond     0 to 1: how far the place is past the edge of the capture
-  double MissingOf(double nearest_w, double beyond) const {
-    if (std::isinf(nearest_w)) return 1;
-    // Hats stand for the whole lens, wherever it is.
-    return (1 - hat_share_) * std::max(beyond, PastEdge(nearest_w - near_w_));
   }
 
   const RenderCamera& frame_;

@@ -312,11 +312,11 @@ TEST(SpreadShares, APlaceIsDividedByAGaussian) {
   const auto shares = SpreadShares(points, places, 0.7);
   EXPECT_NEAR(Sum(shares), 1, 1e-12);
   for (size_t i = 0; i < points.size(); ++i)
-    EXPECT_NEAR(shares[i] / shares[0],
-                std::exp((places[0].place.squaredNorm() -
-                          (points[i] - places[0].place).squaredNorm()) /
-                         (2 * 0.7 * 0.7)),
-                1e-12);
+    EXPECT_NEAR(
+        shares[i] / shares[0],
+        std::exp((places[0].place.squaredNorm() - (points[i] - places[0].place).squaredNorm()) /
+                 (2 * 0.7 * 0.7)),
+        1e-12);
 }
 
 TEST(SpreadShares, FarBeyondThePointsTheNearestTakesAll) {
