@@ -68,6 +68,8 @@ TABLES = {
     "quality": ("quality", "bench/quality/quality.py {build}/bin/lfrenderer {data}/groundtruth", ""),
     "quality-areas": ("quality", "bench/quality/quality.py --areas --joint {build}/bin/lfrenderer {data}/groundtruth",
                       ""),
+    "kept_edges": ("rebinning", "bench/quality/kept_edges.py {build}/bin/lfrenderer {data}/groundtruth",
+                   "--only planar_d8_f20_tri_rot"),
     "rebinning_quality": ("rebinning", "bench/quality/rebinning_quality.py {build}/bin/lfrenderer {data}/groundtruth",
                           "--only band_d3"),
     "lens_weights-captures": ("lens-integral", WEIGHTS + "captures", "--only band_d3"),

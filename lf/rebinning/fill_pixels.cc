@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "lf/core/check.h"
+#include "lf/rebinning/fill_rows.h"
 
 namespace lf {
 namespace {
@@ -14,15 +15,17 @@ constexpr int kSweeps = 8;
 
 int Half(int size) { return (size + 1) / 2; }
 
-// Sums of 2 x 2 pixels.
-Image<float> Sums(const Image<float>& picture) {
-  Image<float> sums(Half(picture.width()), Half(picture.height()));
-  const int pairs = picture.width() / 2;
-  for (int y = 0; y < picture.height(); ++y) {
-    const float* const from = picture.row(y);
-    float* const to = sums.row(y / 2);
-    for (int x = 0; x < pairs; ++x) to[x] += from[2 * x] + from[2 * x + 1];
-    if (picture.width() % 2 != 0) to[pairs] += from[2 * pairs];
+// Sums of 2 x 2 pixels, each multiplied by its weight.
+Image<float> Sums(const Image<float>& plane, const Image<float>& weight) {
+  Image<float> sums(Half(plane.width()), Half(plane.height()));
+  const int pairs = plane.width() / 2;
+  for (int y = 0; y < plane.height(); ++y) {
+    const float* __restrict const from = plane.row(y);
+    const float* __restrict const w = weight.row(y);
+    float* __restrict const to = sums.row(y / 2);
+    for (int x = 0; x < pairs; ++x)
+      to[x] += from[2 * x] * w[2 * x] + from[2 * x + 1] * w[2 * x + 1];
+    if (plane.width() % 2 != 0) to[pairs] += from[2 * pairs] * w[2 * pairs];
   }
   return sums;
 }
@@ -31,29 +34,14 @@ Image<float> Sums(const Image<float>& picture) {
 //   counts  numbers of the known pixels
 Image<float> Means(const Image<float>& plane, const Image<float>& weight,
                    const Image<float>& counts) {
-  Image<float> known(plane.width(), plane.height());
-  for (size_t i = 0; i < known.pixels().size(); ++i)
-    known.pixels()[i] = plane.pixels()[i] * weight.pixels()[i];
-  Image<float> means = Sums(known);
+  Image<float> means = Sums(plane, weight);
   for (size_t i = 0; i < means.pixels().size(); ++i)
     means.pixels()[i] /= std::max(counts.pixels()[i], 1.0F);
   return means;
 }
 
-// Rows are mixed by products instead of choices, which compilers would not vectorize.
-
-// Gives each unknown pixel of a row the mean of its neighbours.
-//   row  [width + 2], a copy of the row between two more pixels
-void RelaxRow(const float* __restrict above, const float* __restrict below,
-              const float* __restrict row, const float* __restrict weight, int width,
-              float* __restrict to) {
-  for (int x = 0; x < width; ++x) {
-    const float mean = 0.25F * ((row[x] + row[x + 2]) + (above[x] + below[x]));
-    to[x] = weight[x] * row[x + 1] + (1 - weight[x]) * mean;
-  }
-}
-
-// Gives each unknown pixel of a row its value between reduced pixels.
+// Gives each unknown pixel of a row its value between reduced pixels. The two values are mixed by
+// products, because compilers do not vectorize a choice between them.
 //   between  [Half(width) + 2], a row of reduced pixels between two more
 void TakeRow(const float* __restrict between, const float* __restrict weight, int width,
              float* __restrict to) {
@@ -109,7 +97,7 @@ void FillPixels(std::vector<Image<float>>* planes, const Image<float>& weight) {
     for (Image<float>& plane : *planes) plane.at(0, 0) = 0;
     return;
   }
-  const Image<float> counts = Sums(weight);
+  const Image<float> counts = Sums(weight, weight);
   Image<float> reduced_weight = counts;
   for (float& w : reduced_weight.pixels()) w = std::min(w, 1.0F);
   std::vector<Image<float>> reduced;

@@ -2,6 +2,7 @@
 #include "lf/rebinning/kept_pixels.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <utility>
@@ -71,6 +72,7 @@ class PixelWriter {
 // kept pixel of the place of the pattern; if the LF image has none, its pixels are masked.
 constexpr int kTile_px = 512;
 constexpr int kMargin_px = 32;
+constexpr size_t kMostValues = 5;  // KeptImage::value_count()
 
 // Fills the pixels of `around` whose columns and rows have the same remainders modulo `step` as
 // (first_x, first_y), and passes those of `tile` that are not masked to the writer. Returns false,
@@ -79,6 +81,7 @@ constexpr int kMargin_px = 32;
 bool FillTile(const KeptImage& image, const PixelRect& around, const PixelRect& tile, int step,
               int first_x, int first_y, PixelWriter* writer) {
   const size_t count = image.value_count();
+  LF_CHECK(count <= kMostValues);
   const size_t colours = image.bayer == BayerPattern::kNone ? 3 : 1;
   const int columns = (around.x_end - first_x + step - 1) / step;
   const int rows = (around.y_end - first_y + step - 1) / step;
@@ -104,17 +107,21 @@ bool FillTile(const KeptImage& image, const PixelRect& around, const PixelRect& 
   }
   if (!is_any_kept) return false;
   FillPixels(&planes, weight);
-  std::vector<float> values(count);
-  for (int row = 0; row < rows; ++row)
-    for (int column = 0; column < columns; ++column) {
-      const int x = first_x + step * column, y = first_y + step * row;
-      if (!tile.Contains(x, y) || IsSet(image.masked, image.PlaceOf(x, y))) continue;
-      for (size_t i = 0; i < count; ++i) {
-        const float value = planes[i].at(column, row);
-        values[i] = i < colours ? value * value : value;
-      }
+  for (size_t i = 0; i < colours; ++i)
+    for (float& value : planes[i].pixels()) value *= value;
+  std::array<float, kMostValues> values;
+  for (int row = (std::max(tile.y_begin - first_y, 0) + step - 1) / step; row < rows; ++row) {
+    const int y = first_y + step * row;
+    if (y >= tile.y_end) break;
+    for (int column = (std::max(tile.x_begin - first_x, 0) + step - 1) / step; column < columns;
+         ++column) {
+      const int x = first_x + step * column;
+      if (x >= tile.x_end) break;
+      if (IsSet(image.masked, image.PlaceOf(x, y))) continue;
+      for (size_t i = 0; i < count; ++i) values[i] = planes[i].at(column, row);
       writer->Write(x, y, values.data());
     }
+  }
   return true;
 }
 
