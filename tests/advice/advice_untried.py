@@ -3,7 +3,6 @@
 MEMORY = "needs a machine without memory or threads"
 TOO_SHORT = "needs an interruption within milliseconds; the tests of the program interrupt larger calls and resume them"
 SCRIPT = "a script or a template for a farm, which farms_test.py and slurm_test.py run"
-SLURM = "needs Slurm; slurm_test.py calls its programs"
 HELP = "is no message: a text of the help, or the name of a command"
 BEFORE = "is the library's own check, for Python and C++; the options of the programs are checked before"
 CAPTURE = "needs a capture of another kind: "

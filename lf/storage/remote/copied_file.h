@@ -51,7 +51,6 @@ class CopiedFile {
   const std::string& Complaint() const { return complaint_; }
   // Returns the size of the local file; 0: there is no copy.
   uint64_t local_bytes() const;
-  bool is_remote() const { return remote_.has_value(); }
 
  private:
   CopiedFile(std::filesystem::path path, OpenFile file, std::optional<RemoteFile> remote)
