@@ -16,7 +16,6 @@ import json
 import pathlib
 import re
 import shutil
-import tempfile
 
 import record as results
 from workloads import DISTANCE_M, WORKLOADS, path_yaml
@@ -88,14 +87,7 @@ def main():
     parser.add_argument("--packages", default="1,8,64,300")
     results.add_options(parser)
     arguments = parser.parse_args()
-    if arguments.again:
-        record = json.loads(arguments.again.read_text())
-    elif arguments.build:
-        record = results.context()
-        with tempfile.TemporaryDirectory() as temporary:
-            record["rows"] = measure(arguments, pathlib.Path(temporary))
-    else:
-        parser.error("BUILD_DIR or --again is needed")
+    record = results.record_of(parser, arguments, arguments.build, lambda folder: {"rows": measure(arguments, folder)})
     text = "\n".join([results.sentence(record), ""] + table(record)) + "\n"
     results.publish(arguments, "forecast_table.py", record, text)
 

@@ -12,11 +12,9 @@ frames.
 """
 import argparse
 import itertools
-import json
 import pathlib
 import sqlite3
 import statistics
-import tempfile
 
 import record as results
 from workloads import WORKLOADS, path_yaml, photograph
@@ -73,15 +71,9 @@ def main():
     parser.add_argument("--size", default="480x320")
     results.add_options(parser)
     arguments = parser.parse_args()
-    if arguments.again:
-        record = json.loads(arguments.again.read_text())
-    elif arguments.build:
-        record = results.context() | {"density": arguments.density, "size": arguments.size}
-        with tempfile.TemporaryDirectory() as temporary:
-            record["rows"] = measure(arguments.build.resolve(), pathlib.Path(temporary), arguments.density,
-                                     arguments.size)
-    else:
-        parser.error("BUILD_DIR or --again is needed")
+    record = results.record_of(parser, arguments, arguments.build, lambda folder: {
+        "density": arguments.density, "size": arguments.size,
+        "rows": measure(arguments.build.resolve(), folder, arguments.density, arguments.size)})
     text = "\n".join([results.sentence(record), ""] + table(record)) + "\n"
     results.publish(arguments, "image_orders.py", record, text)
 

@@ -17,7 +17,6 @@ import argparse
 import json
 import pathlib
 import statistics
-import tempfile
 import time
 
 import cv2
@@ -98,14 +97,8 @@ def main():
     parser.add_argument("--runs", type=int, default=3)
     results.add_options(parser)
     arguments = parser.parse_args()
-    if arguments.again:
-        record = json.loads(arguments.again.read_text())
-    elif arguments.light_field:
-        record = results.context() | {"size": arguments.size, "runs": arguments.runs}
-        with tempfile.TemporaryDirectory() as temporary:
-            record.update(measure(arguments, pathlib.Path(temporary)))
-    else:
-        parser.error("BUILD_DIR LIGHTFIELD or --again is needed")
+    record = results.record_of(parser, arguments, arguments.light_field, lambda folder: {
+        "size": arguments.size, "runs": arguments.runs, **measure(arguments, folder)}, "BUILD_DIR LIGHTFIELD")
     lines = ["| frames | way | s | CPU s | CPU s of loading | imread() alone, CPU s | peak MiB |", "|" + " --- |" * 7]
     lines += [f"| {row['frames']} | {row['way']} | {row['seconds']:.1f} | {row['cpu_s']:.1f} | "
               f"{row['load_cpu_s']:.1f} | {record['imread_cpu_s']:.1f} | {row['peak_bytes'] / 2 ** 20:,.0f} |"

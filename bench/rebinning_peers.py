@@ -69,13 +69,8 @@ def main():
     parser.add_argument("--runs", type=int, default=3)
     results.add_options(parser)
     arguments = parser.parse_args()
-    if arguments.again:
-        record = json.loads(arguments.again.read_text())
-    elif arguments.build:
-        record = results.context()
-        record["rows"] = measure(arguments.build.resolve(), arguments.runs)
-    else:
-        parser.error("BUILD_DIR or --again is needed")
+    record = results.record_of(parser, arguments, arguments.build,
+                               lambda folder: {"rows": measure(arguments.build.resolve(), arguments.runs)})
     text = "\n".join([results.sentence(record) + " One thread.", ""] + table(record)) + "\n"
     results.publish(arguments, "rebinning_peers.py", record, text)
 

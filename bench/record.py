@@ -4,7 +4,7 @@
 A script that makes a table does four things:
 
     results.add_options(parser)                        # --name, --write, --again
-    record = results.context()                         # before anything is measured
+    record = results.record_of(parser, arguments, arguments.build, measure)  # measures, or reads --again
     results.call([build / "bin/lfsynth", "chart", ...])           # runs a program; fails with its message
     used = results.timed([build / "bin/lfrenderer", field, ...])  # also measures it
     results.publish(arguments, "script.py", record, text)         # prints, writes bench/results/ and the page
@@ -197,6 +197,21 @@ def add_options(parser):
     parser.add_argument("--again", type=pathlib.Path, metavar="JSON", help="of an earlier run: measure nothing")
     parser.add_argument("--write", type=pathlib.Path, metavar="PAGE",
                         help="put the table into this page, between its markers, and keep its record")
+
+
+def record_of(parser, arguments, given, measure, names="BUILD_DIR"):
+    """Returns the record of --again, or context() with what measure(folder) returns; the folder is temporary.
+
+    given  an argument that must be there if --again is not
+    names  arguments that the message then asks for
+    """
+    if arguments.again:
+        return json.loads(arguments.again.read_text())
+    if not given:
+        parser.error(f"{names} or --again is needed")
+    record = context()
+    with tempfile.TemporaryDirectory() as temporary:
+        return record | measure(pathlib.Path(temporary))
 
 
 def marker_of(script):

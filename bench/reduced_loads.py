@@ -13,12 +13,10 @@ of display values of the whole LF images; borders of four pixels are left out. `
 of `still-life`, which is loaded as RGB.
 """
 import argparse
-import json
 import math
 import pathlib
 import sqlite3
 import sys
-import tempfile
 import time
 
 import numpy as np
@@ -125,14 +123,7 @@ def main():
     parser.add_argument("--images", type=int, default=40, help="LF images of each capture")
     results.add_options(parser)
     arguments = parser.parse_args()
-    if arguments.again:
-        record = json.loads(arguments.again.read_text())
-    elif arguments.build:
-        record = results.context()
-        with tempfile.TemporaryDirectory() as temporary:
-            record["rows"] = rows_of(arguments, pathlib.Path(temporary))
-    else:
-        parser.error("BUILD_DIR or --again is needed")
+    record = results.record_of(parser, arguments, arguments.build, lambda folder: {"rows": rows_of(arguments, folder)})
     text = "\n".join([results.sentence(record), ""] + table(record)) + "\n"
     results.publish(arguments, "reduced_loads.py", record, text)
 

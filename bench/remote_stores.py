@@ -10,12 +10,10 @@ programs, once for each kind of server. All calls run at the same time, because 
 exit code, the time, the peak of memory, and the bytes of bodies that the server has sent before the connection ended.
 """
 import argparse
-import json
 import os
 import pathlib
 import subprocess
 import sys
-import tempfile
 import threading
 import time
 
@@ -186,14 +184,7 @@ def main():
     parser.add_argument("build", type=pathlib.Path, nargs="?")
     results.add_options(parser)
     arguments = parser.parse_args()
-    if arguments.again:
-        record = json.loads(arguments.again.read_text())
-    elif arguments.build:
-        record = results.context()
-        with tempfile.TemporaryDirectory() as temporary:
-            record["rows"] = rows_of(arguments, pathlib.Path(temporary))
-    else:
-        parser.error("BUILD_DIR or --again is needed")
+    record = results.record_of(parser, arguments, arguments.build, lambda folder: {"rows": rows_of(arguments, folder)})
     text = "\n".join([results.sentence(record), ""] + table(record)) + "\n"
     results.publish(arguments, "remote_stores.py", record, text)
 

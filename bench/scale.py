@@ -25,7 +25,6 @@ import json
 import math
 import pathlib
 import shutil
-import tempfile
 
 import record as results
 
@@ -235,15 +234,9 @@ def main():
     parser.add_argument("--folder", type=pathlib.Path)
     results.add_options(parser)
     arguments = parser.parse_args()
-    if arguments.again:
-        record = json.loads(arguments.again.read_text())
-    elif arguments.build:
-        record = results.context()
-        record |= {key: getattr(arguments, key) for key in ("frames", "size", "memory", "packages", "threads")}
-        with tempfile.TemporaryDirectory() as temporary:
-            record["rows"] = measure(arguments, arguments.folder or pathlib.Path(temporary))
-    else:
-        parser.error("BUILD_DIR or --again is needed")
+    record = results.record_of(parser, arguments, arguments.build, lambda folder: {
+        **{key: getattr(arguments, key) for key in ("frames", "size", "memory", "packages", "threads")},
+        "rows": measure(arguments, arguments.folder or folder)})
     text = "\n".join([results.sentence(record) + f" {record['frames']} frames of "
                                                  f"{record['size']} elements from LF images "
                       f"as large, --memory {record['memory']}, {record['threads']} threads, "

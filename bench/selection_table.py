@@ -44,13 +44,8 @@ def main():
     parser.add_argument("build", type=pathlib.Path, nargs="?")
     results.add_options(parser)
     arguments = parser.parse_args()
-    if arguments.again:
-        record = json.loads(arguments.again.read_text())
-    elif arguments.build:
-        record = results.context()
-        record["rows"] = measure(arguments.build.resolve())
-    else:
-        parser.error("BUILD_DIR or --again is needed")
+    record = results.record_of(parser, arguments, arguments.build,
+                               lambda folder: {"rows": measure(arguments.build.resolve())})
     lines = ["| LF cameras | frames | share seen | a frame | every LF camera asked, in full | "
              "asked first whether it plainly misses |", "|" + " --- |" * 6]
     lines += [f"| {row['cameras']:,} | {row['frames']} | {100 * row['share']:.2g} % | {milliseconds(row, 'octree')} | "

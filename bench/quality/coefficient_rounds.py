@@ -19,11 +19,9 @@ sRGB values, interpolated between the measured numbers of bytes, as a mean over 
 defaults.
 """
 import argparse
-import json
 import pathlib
 import sqlite3
 import sys
-import tempfile
 
 import numpy as np
 
@@ -136,16 +134,9 @@ def main():
     parser.add_argument("--only", default=",".join(CAPTURES), help="captures, with commas between")
     results.add_options(parser)
     arguments = parser.parse_args()
-    if arguments.again:
-        record = json.loads(arguments.again.read_text())
-    else:
-        if not arguments.shared:
-            parser.error("BIN SHARED or --again is needed")
-        record = results.context()
-        with tempfile.TemporaryDirectory() as temporary:
-            bench = order_quality.Bench(arguments.programs.resolve(), arguments.shared.resolve(),
-                                        pathlib.Path(temporary))
-            record["rows"] = measure(bench, arguments.only.split(","))
+    record = results.record_of(parser, arguments, arguments.shared, lambda folder: {
+        "rows": measure(order_quality.Bench(arguments.programs.resolve(), arguments.shared.resolve(), folder),
+                        arguments.only.split(","))}, "BIN SHARED")
     text = "\n".join([results.sentence(record), "PSNR, dB, of frames of a share of the bytes: whole LF images in the "
                       "order `spread`, coefficients of all LF images in rounds.", ""] + table(record)) + "\n"
     results.publish(arguments, "quality/coefficient_rounds.py", record, text)

@@ -10,10 +10,8 @@ first n LF images (--max-images n) against frames of all, in sRGB with the peak 
 seeds and lenses. Frames are rendered by the defaults. The frame of all LF images must have the same bits in all orders.
 """
 import argparse
-import json
 import pathlib
 import sys
-import tempfile
 
 import numpy as np
 
@@ -72,16 +70,10 @@ def main():
     parser.add_argument("--seeds", type=int, default=3)
     results.add_options(parser)
     arguments = parser.parse_args()
-    if arguments.again:
-        record = json.loads(arguments.again.read_text())
-    else:
-        if not arguments.shared:
-            parser.error("BIN SHARED or --again is needed")
-        record = results.context() | {"seeds": arguments.seeds}
-        with tempfile.TemporaryDirectory() as temporary:
-            bench = order_quality.Bench(arguments.programs.resolve(), arguments.shared.resolve(),
-                                        pathlib.Path(temporary))
-            record["rows"] = measure(bench, arguments.only.split(","), arguments.seeds)
+    record = results.record_of(parser, arguments, arguments.shared, lambda folder: {
+        "seeds": arguments.seeds,
+        "rows": measure(order_quality.Bench(arguments.programs.resolve(), arguments.shared.resolve(), folder),
+                        arguments.only.split(","), arguments.seeds)}, "BIN SHARED")
     text = "\n".join([results.sentence(record), "PSNR, dB, of frames of the first *n* LF images against frames of all; "
                       f"means of {record['seeds']} seeds each. Frames are rendered by `{' '.join(DEFAULT)}`.", ""]
                      + table(record)) + "\n"

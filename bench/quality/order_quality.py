@@ -19,7 +19,6 @@ import json
 import pathlib
 import shutil
 import sys
-import tempfile
 
 import numpy as np
 
@@ -164,15 +163,10 @@ def main():
     parser.add_argument("--seeds", type=int, default=6)
     results.add_options(parser)
     arguments = parser.parse_args()
-    if arguments.again:
-        record = json.loads(arguments.again.read_text())
-    else:
-        if not arguments.shared:
-            parser.error("BIN SHARED or --again is needed")
-        record = results.context() | {"seeds": arguments.seeds}
-        with tempfile.TemporaryDirectory() as temporary:
-            record["rows"] = measure(Bench(arguments.programs.resolve(), arguments.shared.resolve(),
-                                           pathlib.Path(temporary)), arguments.only.split(","), arguments.seeds)
+    record = results.record_of(parser, arguments, arguments.shared, lambda folder: {
+        "seeds": arguments.seeds,
+        "rows": measure(Bench(arguments.programs.resolve(), arguments.shared.resolve(), folder),
+                        arguments.only.split(","), arguments.seeds)}, "BIN SHARED")
     text = "\n".join([results.sentence(record), f"PSNR, dB, of frames of the first *n* LF images against frames of "
                       f"all: **spread**, shuffle; means of {record['seeds']} seeds each. Default is `--mode collect "
                       "--estimator bilinear --filter auto --lens-weights auto`; none has `--lens-weights none` in its "

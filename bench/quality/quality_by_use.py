@@ -21,7 +21,6 @@ import json
 import pathlib
 import shutil
 import sys
-import tempfile
 
 import numpy as np
 
@@ -185,16 +184,9 @@ def main():
     parser.add_argument("--films", default=",".join(FILMS), help="films, with commas between")
     results.add_options(parser)
     arguments = parser.parse_args()
-    if arguments.again:
-        record = json.loads(arguments.again.read_text())
-    else:
-        if not arguments.shared:
-            parser.error("BIN SHARED or --again is needed")
-        record = results.context()
-        with tempfile.TemporaryDirectory() as temporary:
-            record["rows"] = measure(Bench(arguments.programs.resolve(), arguments.shared.resolve(),
-                                           pathlib.Path(temporary)), arguments.only.split(","),
-                                     arguments.films.split(","))
+    record = results.record_of(parser, arguments, arguments.shared, lambda folder: {
+        "rows": measure(Bench(arguments.programs.resolve(), arguments.shared.resolve(), folder),
+                        arguments.only.split(","), arguments.films.split(","))}, "BIN SHARED")
     text = "\n".join([results.sentence(record), ""] + table(record)) + "\n"
     results.publish(arguments, "quality/quality_by_use.py", record, text)
 

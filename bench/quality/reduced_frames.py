@@ -18,7 +18,6 @@ import json
 import pathlib
 import shutil
 import sys
-import tempfile
 
 import cv2
 import numpy as np
@@ -199,15 +198,9 @@ def main():
     parser.add_argument("--only", default=",".join(CAPTURES), help="captures, with commas between")
     results.add_options(parser)
     arguments = parser.parse_args()
-    if arguments.again:
-        record = json.loads(arguments.again.read_text())
-    else:
-        if not arguments.shared:
-            parser.error("BUILD_DIR SHARED or --again is needed")
-        record = results.context()
-        with tempfile.TemporaryDirectory() as temporary:
-            record["rows"] = measure(Bench(arguments.build.resolve(), arguments.shared.resolve(),
-                                           pathlib.Path(temporary)), arguments.only.split(","))
+    record = results.record_of(parser, arguments, arguments.shared, lambda folder: {
+        "rows": measure(Bench(arguments.build.resolve(), arguments.shared.resolve(), folder),
+                        arguments.only.split(","))}, "BUILD_DIR SHARED")
     text = "\n".join([results.sentence(record), "PSNR, dB, against the true picture, and against the frame of whole LF "
                       "images.", ""] + table(record)) + "\n"
     results.publish(arguments, "quality/reduced_frames.py", record, text)
