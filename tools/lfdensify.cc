@@ -98,18 +98,17 @@ void AddQuality(CLI::App& app, Arguments& a) {
   lf::OptionGroup quality(app, lf::kQualityGroup);
   quality
       .Add("--depths NEAR FAR", a.depths,
-           "Depths of the scene, in world units (found)\n"
+           "Nearest and farthest depth, in world units (estimated)\n"
            "Distances from the LF cameras, along their optical axes. If the option is not given, "
-           "the depths are found by comparing a few reduced LF images.")
+           "the depths are estimated by comparing a few reduced LF images.")
       ->expected(2)
       ->check(CLI::PositiveNumber);
   quality
       .Add("--spacing PX", a.choices.spacing_px,
-           "Largest distance between copies (1.5)\n"
-           "What is out of focus is made of copies, one for each LF image. The unit is an element "
-           "of the frames if PATH is given, for most points that these show, otherwise a pixel of "
-           "the "
-           "virtual LF images.")
+           "Largest distance between the copies in a blur (1.5)\n"
+           "A point out of focus is shown once by each LF image, and these copies make its blur. "
+           "The unit is an element of the frames if PATH is given, for most points that these "
+           "show, otherwise a pixel of the virtual LF images.")
       ->check(CLI::Range(0.25, 16.));
   quality
       .Add("--most N", a.choices.most_virtual,
@@ -123,8 +122,8 @@ void AddQuality(CLI::App& app, Arguments& a) {
            "their size.")
       ->check(CLI::Range(1, 16));
   quality.AddFlag("--force", a.choices.force,
-                  "Densify even if figures speak against it\n"
-                  "Refused otherwise: LF images that do not agree with their poses, LF images too "
+                  "Densify even if a check fails\n"
+                  "The checks refuse LF images that do not agree with their poses, LF images too "
                   "far from one another, LF cameras that are dense enough already, and LF images "
                   "that cannot be made from their neighbours.");
 }

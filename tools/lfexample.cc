@@ -217,7 +217,7 @@ int main(int argc, char** argv) {
       ->check(CLI::NonNegativeNumber);
   picture.AddFlag(
       "--densify", densify,
-      "Choose a lens that virtual LF images fill\n"
+      "Choose a lens for a render with virtual LF images\n"
       "Serves for photographs that are far apart. The program tests whether the virtual "
       "LF images would be right, and chooses the lens without them if not. Render the "
       "path with lfrenderer --densify.");

@@ -65,7 +65,7 @@ int main(int argc, char** argv) {
   std::string word;
   lf::OptionGroup input(program.app(), lf::kInputGroup);
   input.Add("COMMAND", word,
-            "Command, the first word of the call\n"
+            "stack, depth, sharp, through, epi or views\n"
             "stack: pictures of one camera that differ in their focus distance\n"
             "depth: the depth of every element\n"
             "sharp: a picture in which everything is in focus\n"

@@ -102,7 +102,7 @@ int main(int argc, char** argv) {
   program.SetCommands(commands);
   std::string command;
   lf::OptionGroup input(program.app(), lf::kInputGroup);
-  input.Add("COMMAND", command, "Command, the first word of the call");
+  input.Add("COMMAND", command, "Short name of a program, from the list of commands");
   std::vector<char*> rest = {argv[0]};
   for (std::string& word : words) rest.push_back(word.data());
   rest.push_back(nullptr);

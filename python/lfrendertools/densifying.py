@@ -38,7 +38,7 @@ def densify(field: LightField, store: FilePath, path: Union[None, Camera, Path] 
         The film: virtual LF images fill its lenses, for any arrangement of LF cameras. By default they are made
         wherever LF cameras are around, which must then look in one direction, or at one point from one side.
     spacing : float
-        Largest distance between copies, in elements of the frames, from 0.25 to 16.
+        Largest distance between the copies in a blur, in elements of the frames, from 0.25 to 16.
     most : int
         Make at most so many virtual LF images; if more are needed, they stand less densely.
     divisor : int

@@ -384,7 +384,7 @@ class StereoTest(ProgramTestCase):
                    "side-by-side")
         # Numbers of views that divide the number of frames, but are not those of the path.
         out = self.folder / "film.exr"
-        self.fails(3, ["frame_0004.exr", "4 views of moment 1", "that of the next frame is its right neighbour"], QUILT,
+        self.fails(3, ["frame_0004.exr", "4 views of moment 1", "the next frame stands one step to the right"], QUILT,
                    self.quilt, "-o", out, "--views", "2x2")
         self.fails(3, ["frame_0007.exr", "not the right neighbour", "frame_0006.exr", "6 and 7 of the 12"], QUILT,
                    self.quilt, "-o", out, "--views", "4x3")

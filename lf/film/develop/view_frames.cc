@@ -177,9 +177,10 @@ Result<void> CheckViews(const ViewMoment& moment, std::span<const StatedCamera> 
           moment.number));
   if (next != nullptr && is_beside(cameras.back(), *next))
     return InputError(fmt::format(
-        "{}: its camera would be the last of the {} views of moment {}, but that of the next frame "
-        "is its right neighbour, as of a further view: give the number of views that lfpath was "
-        "given",
+        "{}: would be the last of the {} views of moment {}, but the camera of the next frame "
+        "stands "
+        "one step to the right, like one more view of this moment: give the number of views that "
+        "lfpath was given",
         moment.files.back().string(), cameras.size(), moment.number));
   return {};
 }

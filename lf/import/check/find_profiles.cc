@@ -28,10 +28,11 @@ std::optional<FoundProfile> FindProfile(const LightField& light_field) {
 }
 
 std::string TextOf(const FoundProfile& profile) {
-  return fmt::format(
-      "{} in {} of {} examined images, {}", profile.name, profile.image_count, profile.asked_count,
-      profile.is_converted ? "converted to sRGB"
-                           : "not converted, because the calibration states what values mean");
+  return fmt::format("{} in {} of {} examined images, {}", profile.name, profile.image_count,
+                     profile.asked_count,
+                     profile.is_converted
+                         ? "converted to sRGB"
+                         : "not converted, because the calibration states how pixels encode light");
 }
 
 }  // namespace lf

@@ -120,11 +120,11 @@ Result<ImageRanges> PartSetReader::RangesOf(uint32_t id, uint64_t code_bytes) {
         fmt::format("is damaged: {} of LF image {}; copy or make it again", fault, id));
   };
   LF_ASSIGN_OR_RETURN(const bool has_row, select_.Step());
-  if (!has_row) return damaged("it does not state the place");
+  if (!has_row) return damaged("it states no range of bytes");
   LF_ASSIGN_OR_RETURN(const std::string_view text, select_.Blob(0));
   const std::optional<ImageRanges> ranges = RangesOfText(text, part_count_);
   select_.Reset();
-  if (!ranges) return damaged("it states an impossible place");
+  if (!ranges) return damaged("it states an impossible range of bytes");
   uint64_t bytes = ranges->mask.bytes;
   for (const PartRange& piece : ranges->pieces) bytes += piece.bytes;
   if (bytes != code_bytes) return damaged("it states two different sizes");

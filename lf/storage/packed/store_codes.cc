@@ -34,7 +34,7 @@ Result<void> FindMissingParts(OpenedStore* store, std::vector<PackedCode>* codes
         const std::optional<ImageRanges> ranges = RangesOfText(text, part_count);
         if (!ranges)
           return store->settings.Damaged(
-              fmt::format("it states an impossible place of LF image {}", id));
+              fmt::format("it states an impossible range of bytes of LF image {}", id));
         const auto is_there = [&](size_t part, const PartRange& range) {
           return range.bytes == 0 || (part < found.size() && range.end() <= found[part]);
         };
