@@ -19,7 +19,7 @@ bool IsKnown(float q) { return q > 0 && std::isfinite(q); }
 // A square of the quadtree, cut off by the plate, with the plane through its elements.
 struct Node {
   FocalPiece piece;
-  int side = 0;       // of the square
+  int side = 0;       // length of a side of the square
   double most = 0;    // largest difference of an inverse depth from the plane
   double sum = 0;     // sum of the differences
   double excess = 0;  // sum of the squared differences beyond the limit

@@ -34,7 +34,7 @@ class HoodTest {
 
  private:
   std::vector<ApertureEdge> edges_;
-  Vec3 centre_ = Vec3::Zero();  // of the hood's opening, in the world
+  Vec3 centre_ = Vec3::Zero();  // centre of the hood's opening, in the world
   Vec3 right_ = Vec3::UnitX(), up_ = Vec3::UnitY(), forward_ = Vec3::UnitZ();
 };
 

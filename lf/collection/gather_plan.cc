@@ -24,7 +24,7 @@ struct GatherForms {
   PixelForm forward;     // f.(X - c) times a positive number: > 0 if d = X - c
   PixelForm lens_right;  // lens position = (lens_right e, lens_up e) / (forward e)
   PixelForm lens_up;
-  PixelForm hood_right;  // the same on the plane of the hood, if there is one
+  PixelForm hood_right;  // as lens_right, on the plane of the hood, if there is one
   PixelForm hood_up;
   // X - c in axes of the LF camera, times a positive number. Without lens distortion also
   // multiplied by the camera's intrinsic matrix, which yields homogeneous pixel positions.

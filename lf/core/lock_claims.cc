@@ -213,7 +213,8 @@ class ClaimJudge {
   double now_s() const { return now_s_; }
 
  private:
-  // Returns true if the processes of the claim have ended, or if it was watched in vain before.
+  // Returns true if the processes of the claim have ended, or if it was found dead before and has
+  // not been refreshed since.
   bool IsKnownDead(const FoundClaim& claim) {
     const auto known = dead_.find(claim.name);
     if (known != dead_.end() && known->second == claim.refreshed_s) return true;

@@ -57,7 +57,8 @@ class OutputFiles {
   const OutputFile* FindByNumber(const std::filesystem::path& input) const;
 
   std::vector<OutputFile> files_;
-  // Indices of files_: of existing files by device and inode; of all files by canonical path.
+  // Indices in files_: numbers_ finds existing files by device and inode, paths_ finds all files by
+  // canonical path.
   std::map<std::pair<dev_t, ino_t>, size_t> numbers_;
   std::map<std::string, size_t> paths_;
   std::set<std::string, std::less<>> names_;  // file names of paths_

@@ -18,7 +18,7 @@ namespace {
 // distortion is ignored.
 //   point  homogeneous, in camera axes
 bool Sees(const Intrinsics& k, const Vec3& point) {
-  constexpr double kBeyond = 0.5;  // of the size, on each side
+  constexpr double kBeyond = 0.5;  // share of the size, on each side
   if (!(point.z() > 0)) return false;
   const double y = point.y() / point.z(), x = point.x() / point.z();
   const double u = k.fx_px * x + k.skew_px * y + k.cx_px, v = k.fy_px * y + k.cy_px;

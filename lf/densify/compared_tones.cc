@@ -14,8 +14,10 @@ bool IsShown(const uint16_t* tones) {
   return tones[LfPixels::kRayLane] != 0 && !IsTransparent(tones);
 }
 
-// Adds the pixels from `first` on, `step` values apart, up to kReach away: each sum over a row or
-// column of `count` pixels.
+// Sums the tones around each pixel of a row or column: over the pixels up to kReach before and
+// behind it.
+//   first  the first of `count` pixels, whose values are `step` apart
+//   sums   results, one for each pixel, at the same distances
 void AddAround(const uint16_t* first, size_t step, int count, uint16_t* sums) {
   uint32_t sum[LfPixels::kRgbLanes] = {};
   const auto add = [&](int at, int sign) {

@@ -67,7 +67,7 @@ struct DensifyReport {
     std::string reason;
   };
   std::vector<Skipped> skipped;  // LF images that are not used because they cannot be read
-  size_t recorded_count = 0;     // those that are used
+  size_t recorded_count = 0;     // number of recorded LF images that are used
   size_t virtual_count = 0;
   // Names of LF images that are not used because their poses are wrong: they contradict those in
   // the lenses of the film (GroupOfFilm()), whose share of the nearness to the lenses is also told.

@@ -32,7 +32,7 @@ namespace {
 constexpr int kLeastPlanes = 24, kMostPlanes = 256;
 constexpr double kPlaneStep_px = 0.35;
 constexpr double kTolerance_px = 0.6;
-constexpr double kOutside = 0.5;  // of the median distance between LF cameras that are used
+constexpr double kOutside = 0.5;  // share of the median distance between LF cameras that are used
 
 // Limits of the shift between compared LF images, as a share of their longer side, and of the angle
 // between their rays to the middle of the scene.

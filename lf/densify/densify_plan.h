@@ -56,7 +56,7 @@ struct DensifyPlan {
   double tolerance = 0;           // inverse depths that differ by less count as equal
   double shift_per_depth_px = 0;  // median ShiftPerInverseDepth() of compared working images
   double distance_w = 0;          // distance between neighbouring virtual LF cameras
-  double spacing_px = 0;  // what the distance brings about: DensifyChoices::spacing_px, or more
+  double spacing_px = 0;          // spacing at this distance: DensifyChoices::spacing_px, or more
   // Says that the LF cameras are dense enough, and then there are no virtual ones; otherwise empty.
   std::string dense;
   std::vector<VirtualCamera> virtual_cameras;

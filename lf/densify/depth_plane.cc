@@ -48,8 +48,8 @@ DepthPlane FillDisagreeing(const DepthPlane& plane, const Image<uint8_t>& agreei
   constexpr int kReach = 60;
   // Cost of a neighbouring depth, in tones, per pixel of shift and per pixel of distance.
   constexpr float kPerShift = 2, kPerDistance = 0.5f;
-  // Limit of that of the nearest depth. Where LF cameras are far apart, tones could not outweigh
-  // it.
+  // Limit of the cost of the nearest depth. Without it, tones could not outweigh depths if LF
+  // cameras are far apart.
   constexpr double kMostForDepth = 20;
   const auto per_number = static_cast<float>(std::min(kPerShift * shift_per_depth_px * range.Step(),
                                                       kMostForDepth / InverseDepths::kLast));

@@ -16,11 +16,10 @@
 namespace lf {
 namespace {
 
-// The longer side of a reduced image has at least so many pixels.
-constexpr int kReducedSide = 200;
+constexpr int kReducedSide = 200;  // least number of pixels along the longer side if reduced
 constexpr int kMostReduction = 4;
 constexpr int kBlock = 60;        // pixels along the side of a block if all planes are compared
-constexpr int kBandedBlock = 14;  // otherwise
+constexpr int kBandedBlock = 14;  // the same if each block compares a band of planes
 
 // Returns the divisor of the reduced image whose depths are found first; 1: there is none.
 int ReductionOf(int width, int height) {

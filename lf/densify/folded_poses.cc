@@ -96,7 +96,7 @@ class Groups {
   std::vector<uint32_t> parents_;
 };
 
-constexpr double kAgrees = 0.4, kDisagrees = 0.2;  // of the usual best share
+constexpr double kAgrees = 0.4, kDisagrees = 0.2;  // limits, as shares of the usual best share
 
 double UsualBest(size_t count, std::span<const ComparedPair> pairs) {
   std::vector<double> best(count, -1);
@@ -260,7 +260,7 @@ std::optional<FilmGroup> GroupOfFilm(const LightField& light_field,
                                      std::span<const std::vector<uint32_t>> groups,
                                      std::span<const RenderCamera> frames) {
   constexpr size_t kAsked = 8;
-  constexpr double kMiddle = 1.0 / 8;  // of the distance of the farthest that is asked
+  constexpr double kMiddle = 1.0 / 8;  // share of the distance of the farthest LF camera asked
   constexpr double kLeastMean = 2.0 / 3, kLeastOfFrame = 0.5;
   const std::vector<uint32_t> all_ids = FarEnoughApart(light_field, {});
   std::vector<double> sums(groups.size(), 0), least(groups.size(), 1);

@@ -77,7 +77,7 @@ class KeptImages {
   std::mutex mutex_;  // guards all members below
   std::condition_variable loaded_;
   std::unordered_map<LfImageId, Kept> kept_;
-  std::list<LfImageId> uses_;  // the last used first
+  std::list<LfImageId> uses_;  // the most recently used first
   size_t bytes_ = 0;
 };
 

@@ -209,7 +209,7 @@ LensPlaces FilmLenses::Places(double distance, double outside) const {
 
 VirtualCamera FilmLenses::CameraAt(const LensPlace& place, double distance, int divisor) const {
   constexpr double kBeside = 2;     // lattice distances beside a lens that use a place
-  constexpr double kInside = 1e-6;  // of the distance: rounding
+  constexpr double kInside = 1e-6;  // tolerance for rounding, as a share of the distance
   VirtualCamera result;
   result.is_beyond = place.Beyond() > kInside * distance;
   result.sources = place.at.neighbours;

@@ -113,8 +113,8 @@ HWY_ATTR void CompareSamples(const uint64_t* HWY_RESTRICT samples,
 
 // Weights of two neighbouring pixels, for each lane of their eight tones.
 struct Weights {
-  alignas(16) uint16_t below[kOne][8];  // that of the lower pixels
-  alignas(16) uint16_t right[kOne][8];  // those of the left pixel and the right one
+  alignas(16) uint16_t below[kOne][8];  // weights of the lower pixels
+  alignas(16) uint16_t right[kOne][8];  // weights of the left pixel and the right one
 
   constexpr Weights() : below(), right() {
     for (int weight = 0; weight < kOne; ++weight)

@@ -9,7 +9,7 @@
 namespace lf {
 namespace {
 
-constexpr int kBetweenRuns = 2;  // entries
+constexpr int kBetweenRuns = 2;  // entries without a depth between two runs of planes
 
 }  // namespace
 

@@ -96,7 +96,7 @@ struct Others {
   bool Surround() const { return at.neighbours.size() >= kLeastAround && at.inside == at.place; }
   // True if it is almost on the line between others.
   bool HaveBetween() const {
-    constexpr double kMostBeside = 0.25;  // of the distance to the nearest one
+    constexpr double kMostBeside = 0.25;  // share of the distance to the nearest one
     if (at.neighbours.size() < 2) return false;
     double nearest = INFINITY;
     for (const Vec2& point : points) nearest = std::min(nearest, point.norm());

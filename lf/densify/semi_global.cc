@@ -112,7 +112,7 @@ class Matcher {
   void Extend(const Pixel& pixel, int x, int y, int dx, int dy, PathRow* from, PathRow* to) {
     const int from_x = x - dx, from_y = y - dy, stride = pixel.block->costs->stride;
     uint16_t* next = to->At(x);
-    next[stride] = kNoPath;  // what is behind may be of a block with more planes
+    next[stride] = kNoPath;  // the memory behind may be left from a block with more planes
     if (from_x < 0 || from_x >= rect_.width() || from_y < 0 || from_y >= rect_.height()) {
       uint16_t least = kNoPath;
       for (int j = 0; j < stride; ++j) {

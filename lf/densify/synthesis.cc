@@ -318,7 +318,7 @@ class Synthesizer {
   const int width_, height_;
   const float tolerance_, per_tolerance_, farthest_;
   const std::array<uint16_t, kLanes> nothing_;  // a transparent pixel
-  const PixelLanes transparent_;                // the same
+  const PixelLanes transparent_;                // nothing_, as lanes
   const InterruptFlag interrupted_;
   std::vector<SourceView> views_;
   std::vector<Image<float>>& candidates_;  // [source]

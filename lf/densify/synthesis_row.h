@@ -21,7 +21,7 @@ namespace lf {
 void ProjectRow(const PairMap& map, const uint16_t* numbers, int x_begin, int y, int count,
                 float first, float step, float* u_px, float* v_px, float* depths);
 
-// The places at which an image shows points of a row of pixels of another one.
+// Positions in one image of points that a row of pixels of another image shows.
 inline constexpr int kChunk = 64;        // pixels that are computed at once
 inline constexpr int32_t kOutside = -1;  // instead of a pixel
 struct SeenPoints {

@@ -159,7 +159,7 @@ ExampleAperture ChooseAperture(const LightField& light_field, const PinholeCamer
 ExampleAperture ChooseDensifiedAperture(const LightField& light_field, const PinholeCamera& camera,
                                         const Intrinsics& frame, const ExampleFocus& focus,
                                         double spacing_w) {
-  constexpr double kBlur = 0.04;  // of the width of the picture
+  constexpr double kBlur = 0.04;  // share of the width of the picture
   constexpr double kPlaces = 0.9, kAssumedNear = 0.75;
   const ExampleAperture recorded = ChooseAperture(light_field, camera, focus, spacing_w);
   if (!focus.doubt.empty()) return recorded;

@@ -87,11 +87,11 @@ struct FoundDepth {
   double error = 0;  // standard deviation of the depth, relative to distance_w
 };
 
-// Why a place has no depth.
+// Reasons for which a place has no depth.
 enum class NoDepth {
   kDisagreement,  // the views agree on no depth
-  kAmbiguous,     // they agree on several, or the place is a watermark
-  kFar,           // it is so far away that it does not move
+  kAmbiguous,     // the views agree on several depths, or the place is a watermark
+  kFar,           // the place is so far away that it does not move
 };
 
 // Returns the depth on which most views agree. None if they agree on no depth, or almost as well on

@@ -54,7 +54,7 @@ class PointCells {
 std::vector<size_t> FarthestPointOrder(std::span<const Vec2> points, size_t count,
                                        size_t preferred_count) {
   constexpr double kChosen = -1;
-  constexpr double kPreference = 4;  // of squared distances
+  constexpr double kPreference = 4;  // factor of the squared distances of preferred points
   struct Candidate {
     double value;
     size_t index;

@@ -104,7 +104,7 @@ Chart SphereChart(const std::vector<Vec3>& points, const PrincipalAxes& principa
 // from a point to its nearest neighbour, whichever of the four it is.
 Vec2 TurnOf(const std::vector<Vec2>& points) {
   constexpr size_t kSamples = 256;
-  constexpr double kSamePosition = 1e-6;  // of the extent of all points
+  constexpr double kSamePosition = 1e-6;  // share of the extent of all points
   constexpr double kRegular = 0.5;        // least mean of powers of length 1, if there are rows
   const size_t step = std::max<size_t>(1, points.size() / kSamples);
   const auto square = [](const Vec2& d) { return d.x() * d.x() + d.y() * d.y(); };

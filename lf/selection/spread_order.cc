@@ -126,8 +126,8 @@ class Assignment {
   }
   std::vector<Item>::iterator At(size_t i) { return items_.begin() + static_cast<ptrdiff_t>(i); }
 
-  // Divides targets by the cut, each part by ascending ranks. Those for which their own part has no
-  // item left go to the other one.
+  // Divides targets by the cut, each part by ascending ranks. A target for which its own part has
+  // no item left goes to the other part.
   void DivideTargets(size_t begin, size_t end, const Cut& cut, uint64_t at) {
     const auto axis = static_cast<size_t>(cut.axis);
     others_.clear();

@@ -50,7 +50,7 @@ Result<DepthChannels> ChannelsOf(const ImageFileInfo& info, const std::string& n
 
 // Converts elements and depths to places.
 struct DepthCamera {
-  Mat3 world_from_ndc = Mat3::Identity();  // of (u Z, v Z, Z)
+  Mat3 world_from_ndc = Mat3::Identity();  // maps (u Z, v Z, Z) to the world
   Vec3 centre = Vec3::Zero();
   double width = 0, height = 0;  // of the display window, elements
   double left = 0, top = 0;      // of the picture in the display window

@@ -66,7 +66,7 @@ Result<Image<uint8_t>> LfPicture(const LightField& light_field, const LfImageSto
   LF_ASSIGN_OR_RETURN(
       const int reduction,
       LoadReducedWithoutThrowing(store, id, side, k, light_field.ImagePath(id).string(), &pixels));
-  const int factor = side / reduction;  // what is left to reduce
+  const int factor = side / reduction;  // the reduction that is left to do
   const RadianceEncoding& encoding = light_field.encoding;
   Image<uint8_t> picture((pixels.rect.width() + factor - 1) / factor,
                          (pixels.rect.height() + factor - 1) / factor, 3, kMaskedGrey);

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs every program in a folder whose name is no text, since names of files may have any bytes. What a program prints
-as JSON is text all the same; a file that is read again keeps the bytes of the names, or is refused before the work.
+"""Runs every program in a folder whose name is not text (not UTF-8), since file names may have any bytes. The JSON
+that a program prints is text nevertheless. A file that is read again either keeps the bytes of the names, or is refused
+before the work begins.
 
 usage: no_text_names_test.py FOLDER_OF_THE_PROGRAMS
 """

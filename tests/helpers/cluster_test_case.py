@@ -121,8 +121,8 @@ run
                     kill -CONT $$
                     sleep 0.02
                 done
-                # Continues the renderer when one of the signals 1 to 16 is pending, or after some minutes. A STOP
-                # that it has not yet obeyed is pending.
+                # Continues the renderer when one of the signals 1 to 16 is pending, or after some minutes. STOP, which
+                # may also be pending, is signal 19.
                 for ((i = 0; i < 20000; ++i)); do
                     grep -qE '^S(ig|hd)Pnd:.*[1-9a-f][0-9a-f]{{0,3}}$' /proc/$$/status && break
                     kill -0 $$ || break

@@ -28,7 +28,7 @@ def poses(field):
 
 def quaternion(rotation):
     """Returns (w, x, y, z)."""
-    # Chooses, of four expressions, the one with the largest divisor.
+    # All four candidates are multiples of the quaternion; the longest has the smallest rounding error.
     r = rotation
     candidates = [np.array([1 + r[0, 0] + r[1, 1] + r[2, 2], r[2, 1] - r[1, 2], r[0, 2] - r[2, 0],
                             r[1, 0] - r[0, 1]]),

@@ -151,7 +151,7 @@ class World:
         self.programs, self.folder = pathlib.Path(programs), pathlib.Path(folder)
         self.lock, self.locks, self.made = threading.Lock(), {}, {}
         self.count = 0
-        self.texts = {}  # what programs said on stderr, by the file that they wrote
+        self.texts = {}  # messages of programs on stderr, by the file that they wrote
 
     def new_folder(self, name="out"):
         with self.lock:

@@ -54,7 +54,7 @@ class Rendered(NamedTuple):
     exit_code: int
     last_line: str
     digests: dict = {}   # SHA-256 of the frames' files
-    facts: dict = {}     # what reports say of each frame
+    facts: dict = {}     # facts about each frame, from reports
     skipped: list = []   # names of LF images
     early: dict = {}     # by frame that was finished early: place of the first LF image that it lacks
     early_pixels: dict = {}  # pixels_of() each of these frames

@@ -22,7 +22,7 @@ import unittest
 import pose_mistakes
 
 PROGRAMS = DATA = None
-ALL = False  # whether every mistake is made in every capture
+ALL = False  # True: every mistake is made in every capture
 
 # Drawn captures: options of lfsynth. The thresholds of the verdict were chosen with those of the first half.
 CHOSEN = {

@@ -35,7 +35,7 @@ constexpr double kMostMovedByStep = 1, kMostMovedShare = 0.25;
 // Radius of the windows in which elements of one colour are compared, in radii of the windows of
 // costs: elements beside a border get its depth up to one such radius away.
 constexpr int kGuideRadius = 3;
-constexpr double kSweepShare = 0.9;  // of the work, for progress
+constexpr double kSweepShare = 0.9;  // share of the work, for progress
 
 Error Interrupted() { return {ErrorKind::kInterrupted, "interrupted"}; }
 

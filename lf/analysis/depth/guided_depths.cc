@@ -20,7 +20,7 @@ namespace {
 constexpr double kSimilar = 0.25;
 // Only depths with at least this confidence are tested, and confirm others.
 constexpr float kSure = 0.5f;
-constexpr size_t kSteps = 256;  // of the table of weights, over 4 kSimilar
+constexpr size_t kSteps = 256;  // entries of the table of weights, which spans 4 kSimilar
 constexpr double kFullWeight = 1024;
 
 constexpr std::pair<int, int> kDirections[] = {{1, 0}, {-1, 0}, {0, 1},  {0, -1},
@@ -36,7 +36,7 @@ struct Fellow {
 // Sums of weights.
 struct Support {
   uint64_t all = 0;
-  uint64_t equal = 0;     // of fellows whose depth is equal to a given one
+  uint64_t equal = 0;     // number of fellows whose depth is equal to a given one
   double confidence = 0;  // sum of weight * confidence over these
 
   bool IsMajority() const { return 20 * equal >= 11 * all; }

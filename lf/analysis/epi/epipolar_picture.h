@@ -62,7 +62,7 @@ struct EpipolarPicture {
   double focal_px = 0;
   // LF images that could not be loaded; their lines are NaN.
   std::vector<LfImageId> missing;
-  std::string first_reason;  // why the first of these could not be loaded
+  std::string first_reason;  // the reason why the first of these could not be loaded
 };
 
 // Makes the picture. Loads only the pixels that it needs, of one LF image per thread at a time.

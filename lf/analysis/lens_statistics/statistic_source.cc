@@ -15,7 +15,7 @@ struct StatisticSource::Group {
   std::vector<SelectedImage> order;
   std::vector<SensorPlate> plates;
   std::vector<size_t> frames;  // the frame of each plate
-  size_t told = 0;             // number of LF images that done_ counts
+  size_t told = 0;             // number of LF images of the group that done_ counts so far
   std::unique_ptr<FrameCollector> collector;
 };
 

@@ -39,7 +39,7 @@ struct FocalSurfaceSource {
   bool needs_origin = false;
   bool needs_cell = false;
   bool has_scale = false;   // true: scale is given, false: it may follow from the unit of the map
-  bool has_offset = false;  // likewise offset_w
+  bool has_offset = false;  // true: offset_w is given
   // Map coordinates of the origin of the world, east, north and height in metres, which are
   // subtracted from those of the tags.
   Vec3 map_origin_m = Vec3::Zero();

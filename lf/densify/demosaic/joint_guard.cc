@@ -21,7 +21,7 @@ int BlockCount(int pixels) { return (pixels + kGuardBlock_px - 1) / kGuardBlock_
 // The place of a pixel between the middles of blocks along one axis.
 struct Between {
   int before, after;  // blocks
-  float share;        // of `after`
+  float share;        // weight of `after` in the result
 };
 Between BlocksAt(int pixel, int block_count) {
   const float place = (static_cast<float>(pixel) + 0.5F) / kGuardBlock_px - 0.5F;

@@ -22,7 +22,7 @@ struct TaskStatus {
   // Number of rays left, by lfrenderer's last progress, if any. The progress counts LF pixels that
   // are tested, as ray_total does, whether its unit is called "rays" or "px".
   std::optional<uint64_t> rays_left;
-  uint64_t rays_done = 0;  // how many of the forecast ray_total rays are done
+  uint64_t rays_done = 0;  // number of the forecast ray_total rays that are done
   uint64_t ray_total = 0;
   uint64_t image_done = 0;  // number of LF images read since the last start
   uint64_t image_total = 0;

@@ -75,7 +75,7 @@ enum class CompressPhase : uint8_t {
   kChoosing,   // a sample of the LF images is encoded (Prediction::kChosen)
   kEncoding,   // the LF images are encoded or copied
   kVerifying,  // the LF images are read back (CompressOptions::verify)
-  kPreparing,  // mosaics are looked at before they are demosaicked (CompressSource::demosaicked)
+  kPreparing,  // mosaics are examined before they are demosaicked (CompressSource::demosaicked)
 };
 
 struct CompressProgress {

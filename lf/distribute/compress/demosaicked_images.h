@@ -30,7 +30,8 @@ RadianceEncoding RgbEncodingOf(const LightField& mosaics);
 class DemosaickedImages {
  public:
   //   mosaics              CheckForJoint() must have succeeded
-  //   measures_footprint   true: Prepare() measures it, because that of mosaics is hard to tell
+  //   measures_footprint   true: Prepare() measures the footprint of the RGB LF images, because the
+  //                        mosaics hardly tell it
   DemosaickedImages(LightField mosaics, bool measures_footprint);
 
   // Returns words that a packed store records, so that it is resumed only with equal pixels.
@@ -38,7 +39,7 @@ class DemosaickedImages {
 
   // Must have succeeded before Read() is called. Errors of JointDemosaicker::Make() and
   // MeasureFootprint().
-  //   tell  called with the number of LF images that were looked at; may be empty
+  //   tell  called with the number of LF images that were examined; may be empty
   Result<void> Prepare(ThreadPool& pool, const std::atomic<bool>* interrupted,
                        const std::function<void(size_t done, size_t total)>& tell);
 

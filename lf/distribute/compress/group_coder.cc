@@ -28,7 +28,7 @@ constexpr double kClear = 0.8;
 // How the bytes and the error of images that are encoded alone depend on the threshold.
 struct Rate {
   double bytes_exponent = 0;  // bytes are proportional to the threshold to the power of this
-  double error_exponent = 0;  // so is the mean squared error
+  double error_exponent = 0;  // as bytes_exponent, for the mean squared error
 
   // Returns the bytes that images of alone.bytes take if they have the error of `group` instead of
   // their own.

@@ -207,7 +207,7 @@ class Verifier {
   const GroupCoder group_coder_;
   std::mutex mutex_;
   std::vector<std::unique_ptr<PackedCodeReader>>
-      readers_;  // that nobody uses now; guarded by mutex_
+      readers_;  // the readers that nobody uses now; guarded by mutex_
 };
 
 }  // namespace

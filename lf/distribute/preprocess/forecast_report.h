@@ -21,7 +21,7 @@ struct ForecastFacts {
   int thread_count = 1;
   double read_s = 0;  // seconds that it took to read the calibration
   DepthSource depths_from = DepthSource::kUnknown;
-  std::string depths_argument = "depths";  // what PreprocessOptions::depths is called by the caller
+  std::string depths_argument = "depths";  // the caller's name of PreprocessOptions::depths
 };
 
 // Returns warnings about missing LF images, double edges, black frames, and lenses that exceed the

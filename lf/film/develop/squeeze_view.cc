@@ -103,7 +103,7 @@ Image<T> SqueezedImage(const Image<T>& view, int width, int height) {
   Image<T> squeezed(width, height, view.channels());
   // The last row that was read is kept, because two new rows may share it.
   int known = -1;
-  std::vector<double> narrow;  // its light in new columns
+  std::vector<double> narrow;  // light of the row `known`, in the new columns
   for (int y = 0; y < height; ++y) {
     const PixelShares& part = rows[static_cast<size_t>(y)];
     std::vector<double> light(channels * static_cast<size_t>(width), 0.0);

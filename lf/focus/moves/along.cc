@@ -27,7 +27,7 @@ struct Part {
   double first_w = 0, last_w = 0;  // places along the track
   double travel_rad = 0;
   double crop = 1;
-  Stop stops[2] = {Stop::kCalm, Stop::kCalm};  // what ends it before first_w and after last_w
+  Stop stops[2] = {Stop::kCalm, Stop::kCalm};  // the obstacles before first_w and behind last_w
 };
 
 class AlongSearch {

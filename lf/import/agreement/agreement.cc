@@ -26,12 +26,12 @@ constexpr double kLeastMove = 3;  // median way of a place between LF images, in
 // Thresholds of the verdict, as shares of the places. doc/judgements.md says how they were chosen.
 constexpr double kAgreeShare = 0.6;     // images and poses agree if no fewer places do
 constexpr double kRepairedShare = 0.6;  // a repair is named if it makes as many places agree
-constexpr double kCertainShare = 0.75;  // the same if it explains only a few places better
+constexpr double kCertainShare = 0.75;  // as kRepairedShare, if few places are explained better
 constexpr double kContrast = 0.25;      // between right and wrong poses
 constexpr double kSureShare = 0.85;     // no repair is tried, except of the order of names
-constexpr double kMostGain = 0.08;      // of a repair, if images and poses agree as they are
+constexpr double kMostGain = 0.08;      // largest gain by a repair if images and poses agree
 constexpr double kWins = 0.1;           // places that a repair explains better, see IsBetter()
-constexpr double kOrderWins = 0.04;     // the same for the order of names
+constexpr double kOrderWins = 0.04;     // as kWins, for another order of the names
 
 constexpr size_t kPlacesForOrder = 200;  // fewer may not tell one order of names from another
 constexpr size_t kFocalSteps = 76;       // focal lengths that are tried, each 4 % longer
@@ -204,7 +204,7 @@ bool IsBetter(const std::vector<PlaceError>& repaired, const std::vector<PlaceEr
 // How other orders of the names explain the images.
 struct Orders {
   std::optional<Judged> better;  // better than the recorded order
-  bool are_equal = false;        // true if another one explains the images no worse
+  bool are_equal = false;        // true if another order explains the images no worse
 };
 
 // Tries other orders of the names. Names shifted by one leave most neighbours in a grid beside one

@@ -44,7 +44,7 @@ struct Agreement {
   // verdict is kNotSure, because repeated patterns are also matched wrongly.
   std::optional<Repair> repair;
   Fit repaired;        // fit of the repair
-  std::string clause;  // what the repair supposes: "the matrices were inverted"
+  std::string clause;  // the mistake that the repair supposes: "the matrices were inverted"
 };
 
 // Returns the agreement of images and poses. It compares corners of at most 150 reduced LF images,

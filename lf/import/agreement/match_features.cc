@@ -13,12 +13,12 @@ namespace lf {
 namespace {
 
 constexpr size_t kLeastMatches = 16;
-constexpr double kLeastShare = 0.5;  // of the matches, that lie on epipolar lines
+constexpr double kLeastShare = 0.5;  // least share of the matches that lie on epipolar lines
 
 // Returns the pairs of corners that are each other's nearest, by the angle between descriptors. The
 // second nearest must be clearly farther away.
 std::vector<FeatureMatch> MutualMatches(const ImageFeatures& a, const ImageFeatures& b) {
-  constexpr float kMostRatio = 0.8f;  // of the distances to the nearest and the second nearest
+  constexpr float kMostRatio = 0.8f;  // distance to the nearest / distance to the second nearest
   // The largest and the second largest likeness (cosine) of each corner, and the index of the
   // largest.
   struct Best {

@@ -42,7 +42,7 @@ class PlaceErrors {
   const std::vector<SeenPlace>& places_;
   const int divisor_;
   const bool is_rectified_;
-  std::vector<uint32_t> images_;  // that show a place, ascending
+  std::vector<uint32_t> images_;  // the LF images that show a place, ascending
 };
 
 }  // namespace lf

@@ -25,7 +25,7 @@ enum class ImageCheck {
 
 struct ImageFault {
   LfImageId id;
-  std::string reason;  // what is wrong, and with which file
+  std::string reason;  // the fault, and the file that has it
 };
 
 struct ImageFaults {

@@ -34,7 +34,7 @@ enum class SizesFrom {
 // The cameras of an export, before image files are looked at.
 struct ExportedCameras {
   std::vector<ExportedImage> images;
-  std::filesystem::path folder;  // where the names of the images lead from; empty: "."
+  std::filesystem::path folder;  // the names of the images are relative to it; empty: "."
   std::optional<DepthRange> depth_range;
   double unit_m = 1;  // metres per world unit
   // The next three describe images whose size is not stated.

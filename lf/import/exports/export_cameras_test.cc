@@ -163,7 +163,7 @@ TEST(FinishExport, ScalesByTheLargerSideOfEachImage) {
 
 using ExportFiles = FolderTest;
 
-// Without the extension, nobody knows that the image is of floating point, and may be brighter than
+// Only the extension tells that the image holds floating-point values, which may be brighter than
 // white.
 TEST_F(ExportFiles, TellTheExtensionThatANameLacks) {
   ASSERT_TRUE(WriteFileAtomically(folder_ / "a.exr", "x"));

@@ -41,7 +41,7 @@ class JsonValue {
   // Returns the entries of a list, in their order. kInput if this is no list, or longer than
   // kMaxImageCount.
   Result<std::vector<JsonValue>> Entries() const;
-  // Returns the members of an object with their keys, sorted by these. kInput if this is no object.
+  // Returns the members of an object with their keys, sorted by key. kInput if this is no object.
   Result<std::vector<std::pair<std::string, JsonValue>>> Members() const;
 
   // The next four return a value, which must have the right type. A number may be written as a

@@ -176,7 +176,7 @@ Result<RigidTransform> MeshroomPose(const JsonValue& pose) {
 struct MeshroomScene {
   MeshroomVersion version;
   std::map<std::string, JsonValue> intrinsics, poses, rigs;
-  std::map<std::string, Intrinsics> known;  // those that views have named
+  std::map<std::string, Intrinsics> known;  // intrinsics that views have named
 };
 
 Result<void> IndexMeshroomList(const char* list, const char* key, const JsonValue& top,

@@ -54,7 +54,7 @@ Result<std::vector<JsonValue>> IntrinsicsOfFrames(const JsonValue& top, size_t c
   return entries;
 }
 
-// Returns the image files of a folder whose names are whole numbers, by these.
+// Returns those image files of a folder whose names are whole numbers, by their numbers.
 std::map<uint32_t, std::string> NumberedImages(const fs::path& folder) {
   std::map<uint32_t, std::string> names;
   const Result<std::vector<std::string>> all = SortedImageNames(folder);

@@ -83,7 +83,7 @@ std::optional<int> TilesAcross(const Image<float>& picture) {
   // Parallax between neighbouring views must be small in the reduced picture.
   const int step = std::clamp(picture.width() / 256, 4, 16);
   const Image<float> small = Reduced(picture, step);
-  std::vector<double> correlations, least = {1};  // of each lag; the least of all lags up to it
+  std::vector<double> correlations, least = {1};  // index: lag; least: the minimum up to it
   for (int lag = 0; lag <= small.width() / 2 + 1; ++lag) {
     correlations.push_back(Correlation(small, lag));
     least.push_back(std::min(least.back(), correlations.back()));
@@ -120,8 +120,8 @@ Image<float> DetailsOf(const Image<float>& picture) {
   return details;
 }
 
-// Returns by how much the means of the values at each place of a period differ: their variance,
-// less the variance that they would have by chance.
+// Returns how much the mean of the values depends on their position in the period: the variance of
+// the `period` means, less the variance that they would have by chance.
 double VarianceOfPeriod(std::span<const double> values, int period) {
   std::vector<double> sums(static_cast<size_t>(period)), squares = sums, counts = sums;
   for (size_t i = 0; i < values.size(); ++i) {

@@ -23,7 +23,7 @@ namespace {
 constexpr const char* kListKey = "camera_path";
 constexpr const char* kDataparserName = "dataparser_transforms.json";
 constexpr const char* kTopKeys[] = {"lf_space", "lf_unit_m", "lf_views", "lf_first_frame"};
-constexpr double kTransformTolerance = 1e-3;  // of rotations, because files may have few digits
+constexpr double kTransformTolerance = 1e-3;  // tolerance for rotations; files may have few digits
 
 constexpr NumberRule kAnyNumber = {"from -1e12 to 1e12",
                                    [](double x) { return std::abs(x) <= 1e12; }};

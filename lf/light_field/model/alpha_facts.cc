@@ -137,9 +137,10 @@ void MeasureInner(const AlphaImage<T>& image, const std::vector<bool>& is_inner,
 
 template <class T>
 void MeasureEdges(const AlphaImage<T>& image, AlphaFacts* facts) {
-  constexpr int kNear = 2;                // pixels; distance of the opaque pixels
-  constexpr double kLeastLight = 0.02;    // sum of three channels; darker pixels tell nothing
-  constexpr double kOtherSurface = 0.25;  // of the light of multiplied colours; less is a shadow
+  constexpr int kNear = 2;              // pixels; distance of the opaque pixels
+  constexpr double kLeastLight = 0.02;  // sum of three channels; darker pixels tell nothing
+  // Pixels with less than this share of the light of multiplied colours are in a shadow.
+  constexpr double kOtherSurface = 0.25;
   size_t multiplied_count = 0;
   for (int y = kNear; y < image.height() - kNear; ++y)
     for (int x = kNear; x < image.width() - kNear; ++x) {

@@ -213,7 +213,7 @@ Image<float> ThinLensPhotograph(const Scene& scene, const RenderCamera& camera,
   const std::vector<Vec2> element_points = SquarePoints(SideOf(sampling.samples));
   const auto sample_count = static_cast<int>(element_points.size());
   std::vector<Vec3> lens_points;
-  std::vector<double> shares;  // of the light that the lens lets through at its points
+  std::vector<double> shares;  // shares of the light that pass the lens at its points
   for (const Vec2& point : SampleLens(camera.aperture, sample_count, sampling.seed)) {
     lens_points.push_back(LensPointWorld(camera, point));
     shares.push_back(

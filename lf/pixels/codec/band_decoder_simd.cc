@@ -92,7 +92,7 @@ HWY_INLINE void Transpose(const hn::Vec<D128> (&rows)[16], hn::Vec<D128> (&colum
   interleave(other, columns);
 }
 
-constexpr uint8_t kIdleSum = 255;  // of coders that have no column here
+constexpr uint8_t kIdleSum = 255;  // stands for coders that have no column here
 
 struct Escape {
   size_t cell;  // index of the byte in the cells of the row

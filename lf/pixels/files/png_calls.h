@@ -37,7 +37,8 @@ class PngCalls {
     return true;
   }
 
-  // Calls our own function from a callback of libpng. An exception ends Run(), which throws it.
+  // Calls a function of ours inside a callback of libpng. If it throws, libpng is left by a long
+  // jump to Run(), which throws the exception again.
   template <class Function>
   void Guard(const Function& function) {
     try {

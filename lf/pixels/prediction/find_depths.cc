@@ -16,8 +16,8 @@ namespace lf {
 namespace {
 
 constexpr int kMostReducedSide = 400;
-constexpr double kMostMove = 0.25;         // of the longer side of the image
-constexpr double kBeyondInfinity = 0.125;  // of the greatest inverse depth
+constexpr double kMostMove = 0.25;         // share of the longer side of the image
+constexpr double kBeyondInfinity = 0.125;  // share of the greatest inverse depth
 constexpr int kBlockBits = 3;
 constexpr int kBlock = 1 << kBlockBits;
 constexpr double kLeftOut = 0.01;  // share of blocks at each end of the range that are left out

@@ -67,7 +67,7 @@ constexpr std::array<Shares, 1 << kMostReferences> MakeShares() {
   for (unsigned mask = 1; mask < all.size(); ++mask) {
     int count = 0;
     for (unsigned rest = mask; rest != 0; rest >>= 1) count += static_cast<int>(rest & 1);
-    int share = kShare - (count - 1) * (kShare / count);  // of the first one
+    int share = kShare - (count - 1) * (kShare / count);  // share of the first reference
     for (int reference = 0; reference < kMostReferences; ++reference) {
       if ((mask >> reference & 1) == 0) continue;
       all[mask][reference] = static_cast<uint8_t>(share);

@@ -28,7 +28,7 @@ class FilteredImages {
   //   filters      the prefilters of each LF image of the batch; may contain equal ones
   //   keep_pixels  false: if an LF image has only one filter and no result that was kept, the
   //                result replaces its pixels, and BatchImage::filtered_by is set. This touches
-  //                less memory than a copy. No other filter may be asked for that LF image any more
+  //                less memory than a copy. This LF image can then not be filtered otherwise
   void Filter(std::vector<BatchImage>& batch, std::vector<std::vector<Prefilter>> filters,
               bool keep_pixels, const ForEach& for_each);
 

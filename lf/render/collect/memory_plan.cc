@@ -108,7 +108,7 @@ constexpr uint64_t kGroupsInUse = 2;
 
 // Memory for reference images.
 struct ReferenceRoom {
-  size_t least = 0;   // of those of a group for each thread
+  size_t least = 0;   // bytes of the references of one group for each thread
   size_t enough = 0;  // more would gain nothing
 };
 

@@ -53,7 +53,7 @@ void ColourRow(const NeighbourRows& neighbours, const float* green, const float*
 // One row of RGB pixels (step 5). A row of a mosaic holds G and either R or B, which is called C
 // here; D is the colour that the row lacks.
 struct RowColours {
-  bool c_is_red, c_is_even;      // whether C is R, and whether the even columns recorded it
+  bool c_is_red, c_is_even;      // true if C is R; true if the even columns recorded C
   const uint16_t* mosaic;        // [count][2]
   const float *g_at_c, *d_at_c;  // roots at the pixels of C
   const float *c_at_g, *d_at_g;  // roots at the pixels of G

@@ -76,8 +76,7 @@ class StripDemosaicker {
 
  private:
   static constexpr int kLanes = LfPixels::kRgbLanes;
-  // Vectors of compilers read past the end of no row, but rows that begin at multiples of a cache
-  // line are faster.
+  // In floats: each row begins at a multiple of a cache line (64 bytes), which is faster.
   static constexpr size_t kAlignment = 16;
 
   void Allot(StripMemory* memory) {

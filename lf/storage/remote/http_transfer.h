@@ -13,7 +13,7 @@
 
 namespace lf {
 
-// Why a transfer brought less than was asked for.
+// Reasons for which a transfer brought less than was asked for.
 enum class TransferFault {
   kNone,
   kInterrupted,  // the flag of StopRemoteReadsIf() is set
@@ -35,7 +35,7 @@ struct RemoteFacts {
 
 struct TransferAnswer {
   TransferFault fault = TransferFault::kNone;
-  std::string what;          // what came, for messages
+  std::string what;          // description of the answer, for messages
   double retry_after_s = 0;  // time after which the server wants to be asked again
   RemoteFacts facts;         // of the answer, if it has the status 206
 };
