@@ -68,8 +68,8 @@ class Renderer:
         virtual LF images there, like anywhere else. Default True.
     interpolation, kept, max_rays, average_others, preview, ... : object
         Settings of kept rays, for the modes "rebin" and "hybrid": those of the options of `lfrenderer` with these
-        names (doc/rebinning.md), such as `sigma_st=0.7`. The arguments average_others and reparameterise are True or
-        False; slab_position and slab_forward are three numbers.
+        names (doc/rebinning.md), such as `sigma_st=0.7`. The mode "collect" refuses them. The arguments
+        average_others and reparameterise are True or False; slab_position and slab_forward are three numbers.
     memory : str
         Upper limit of the memory that is used, such as "8G" or "512M". Default "8G".
     strict : bool

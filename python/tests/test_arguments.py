@@ -247,9 +247,12 @@ def test_commands_of_programs_keep_their_options(tmp_path):
 
 def test_messages_of_the_library_name_arguments(field, path, tmp_path):
     for options, words in (
-            ({"mode": "rebin", "interpolation": "cells", "max_images": 3}, 'max_images= cannot be used with '
-             'mode="rebin" and interpolation="cells", in which all frames share the cells of all LF images: '
-             'leave it out, or use interpolation="pixels" or mode="collect"'),
+            ({"mode": "rebin", "interpolation": "cells", "max_images": 3}, 'mode="rebin" with '
+             'interpolation="cells" cannot be used with max_images=, because all frames share the cells of all LF '
+             'images: leave max_images= out, or use interpolation="pixels" or mode="collect" without '
+             'interpolation='),
+            ({"xi": 0.25}, 'xi=0.25 changes nothing in mode="collect": add mode="rebin" or mode="hybrid", or leave it '
+             'out'),
             ({"mode": "rebin", "interpolation": "pixels", "average_others": True}, 'interpolation="pixels" cannot be '
              'used with average_others=True, which changes cells alone: leave average_others= out, or use '
              'interpolation="cells"'),

@@ -235,6 +235,20 @@ class RebinningTest(ProgramTestCase):
         self.fails(2, ["--nearest", "--back-end reference"],
                    *self.command("no", "--mode", "rebin", "--nearest", "4"))
 
+    # Without a mode that rebins, they would be ignored. Defaults may be stated.
+    def test_options_of_rebinning_need_a_mode(self):
+        self.path(frames=1)
+        for options in (["--kept", "all"], ["--xi", "0.2"], ["--max-rays", "5000"], ["--interpolation", "pixels"],
+                        ["--alpha", "0"], ["--preview", "off"], ["--nearest", "2", "--back-end", "reference"],
+                        ["--slab-position", "0", "0", "0"], ["--mode", "collect", "--coverage-cells", "32"]):
+            self.fails(2, ["changes nothing in --mode collect: add --mode rebin or --mode hybrid"],
+                       *self.command("no", *options))
+        self.assertFalse((self.folder / "no").exists())
+        self.fails(2, ["--kept all, --xi 0.2 change nothing"], *self.command("no", "--kept", "all", "--xi", "0.2"))
+        self.fails(2, ["--interpolation cells changes nothing"], PREPROCESSOR, self.field, self.folder / "path.yaml",
+                   "-o", self.folder / "no", "--interpolation", "cells")
+        self.render("defaults", "--alpha", "8", "--kept", "auto", "--max-rays", "0")
+
     # The reference back end queries a k-d tree element by element. If it uses the rays within reach, the result equals
     # the result of splats. If it uses the nearest rays (--nearest), it finds a ray for every point of the lens.
     def test_the_reference_back_end_asks_a_tree(self):

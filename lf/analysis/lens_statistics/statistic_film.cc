@@ -11,6 +11,7 @@
 #include "lf/analysis/lens_statistics/statistic_source.h"
 #include "lf/core/byte_text.h"
 #include "lf/render/collect/collected_frame.h"
+#include "lf/render/settings/interpolation.h"
 
 namespace lf {
 namespace {
@@ -82,8 +83,8 @@ Result<void> CheckSettings(const RenderOptions& options) {
   if (film.Rebins())
     return UsageError(fmt::format(
         "{{mode {}}}: rebinned rays are interpolated, and have no share in an order of recorded "
-        "rays: use {{mode collect}}",
-        NameOf(film.mode)));
+        "rays: use {}",
+        NameOf(film.mode), CollectInstead(film)));
   if (options.folder.keep_plates || !options.folder.finish_early.empty())
     return UsageError(
         "{keep_plates}, {finish}: a statistic over the lens has no sums that could be kept or "

@@ -34,12 +34,14 @@ NeedsOptions NeedsOfLaterRender(const FilmSettings& film, const LightField& ligh
 Result<void> CheckLaterRender(const LightField& light_field, const CameraPath& path,
                               std::span<const FrameId> frames, const FilmSettings& film,
                               const NeedsOptions& needs) {
+  LF_RETURN_IF_ERROR(CheckMode(film));
   LF_RETURN_IF_ERROR(CheckInterpolation(film));
   LF_RETURN_IF_ERROR(CheckOpacity(light_field.encoding, film));
   LF_RETURN_IF_ERROR(CheckLenses(path.cameras, film));
   LF_RETURN_IF_ERROR(CheckShutter(path.shutter.exists(), film, needs.guard));
   LF_RETURN_IF_ERROR(CheckMaxImages(film));
-  if (!HasLensWeights(film) && film.lens_weights != LensWeights::kNone)
+  if (!HasLensWeights(film) && film.lens_weights != LensWeights::kNone &&
+      film.lens_weights != LensWeights::kAuto)
     return UsageError(fmt::format(
         "{{lens_weights {}}} cannot be used with {{mode rebin}} and {{interpolation cells}}, which "
         "collect no rays to be weighted: leave it out, or use {{interpolation pixels}}",

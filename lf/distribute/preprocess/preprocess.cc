@@ -152,7 +152,7 @@ Result<PreprocessReport> Preprocessor::Run() {
 Result<void> Preprocessor::Begin() {
   frames_ = options_.frames;
   if (frames_.empty()) frames_ = path_.frames().All();
-  LF_RETURN_IF_ERROR(CheckLaterRender(light_field_, path_, frames_, film_, needs_));
+  LF_RETURN_IF_ERROR(CheckLaterRender(light_field_, path_, frames_, options_.film, needs_));
   if (options_.output_folder) {
     LF_ASSIGN_OR_RETURN(
         PackageFolder folder,

@@ -224,10 +224,11 @@ TEST_F(PreprocessTest, PackagesHaveWhatKeptPixelsOfAShutterNeed) {
   }
   const ImageIndex whole(field_, RanksOf(options_.film.order, field_, options_.film.seed));
   options_.film.lens_weights = LensWeights::kNone;
-  options_.film.rebin.interpolation = RayInterpolation::kPixels;
   std::map<RenderMode, uint64_t> rays;
   for (const RenderMode mode : {RenderMode::kCollect, RenderMode::kRebin, RenderMode::kHybrid}) {
     options_.film.mode = mode;
+    options_.film.rebin.interpolation =
+        Rebins(mode) ? RayInterpolation::kPixels : RayInterpolation::kAuto;
     options_.overwrite = true;
     NeedsOptions needs;
     needs.select.reach = PixelReach::kElement;
@@ -299,7 +300,7 @@ TEST_F(PreprocessTest, PackagesHaveWhatTheModeNeeds) {
     std::map<RenderMode, uint64_t> rays;
     for (const RenderMode mode : {RenderMode::kCollect, RenderMode::kRebin, RenderMode::kHybrid}) {
       options_.film.mode = mode;
-      options_.film.rebin.interpolation = way;
+      options_.film.rebin.interpolation = Rebins(mode) ? way : RayInterpolation::kAuto;
       options_.film.lens_weights = LensWeights::kNone;
       options_.overwrite = true;
       NeedsOptions needs;

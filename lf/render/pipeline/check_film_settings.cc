@@ -61,10 +61,9 @@ Result<void> CheckRecordingTimes(const Package& package, const FilmSettings& fil
         "of other times: render each time as a film of its own ({time})");
   if (KeepsCells(film))
     return UsageError(fmt::format(
-        "{{mode {}}} with {{interpolation cells}}: the frames of a path that moves through time "
-        "cannot share cells: use {} or {{mode collect}}, or render each time as a film of its own "
-        "({{time}})",
-        NameOf(film.mode), PixelsInstead(film)));
+        "{}: the frames of a path that moves through time cannot share cells: use {} or {}, or "
+        "render each time as a film of its own ({{time}})",
+        CellsInWords(film), PixelsInstead(film), CollectInstead(film)));
   return {};
 }
 
@@ -74,10 +73,18 @@ Result<void> CheckShard(const FilmSettings& film) {
   if (!film.shard) return {};
   const bool adds = !film.Rebins() || (KeepsPixels(film) && film.rebin.kept != KeptRays::kEdges);
   if (adds && !film.stop_when.samples && !film.require.samples && !film.MeasuresNoise()) return {};
+  if (KeepsCells(film)) {
+    std::vector<std::string> also;
+    if (film.rebin.kept == KeptRays::kEdges) also.push_back("{kept edges}");
+    return UsageError(
+        fmt::format("{{shard}} renders only a part of the LF images, but {} needs all of them: use "
+                    "{} or {}, or leave {{shard}} out",
+                    CellsInWords(film), PixelsInstead(film, also), CollectInstead(film)));
+  }
   return UsageError(
       "{shard} renders only a part of the LF images, but {mode rebin} and {mode hybrid} with "
-      "{kept edges} or {interpolation cells}, {stop_when} and {require} need all of them: leave "
-      "out these options, or {shard}");
+      "{kept edges}, {stop_when} and {require} need all of them: leave out these options, or "
+      "{shard}");
 }
 
 Result<void> CheckRebinnedRays(const Package& package, const FilmSettings& film,
@@ -152,9 +159,8 @@ Result<void> CheckGuard(const Package& package, const FilmSettings& film) {
           kRemedy));
   if (KeepsCells(film))
     return UsageError(fmt::format(
-        "{{mode {}}} with {{interpolation cells}}: the light field is densified, and cells cannot "
-        "be guarded: use {} or {{mode collect}}, or {}",
-        NameOf(film.mode), PixelsInstead(film), kRemedy));
+        "{}: the light field is densified, and cells cannot be guarded: use {} or {}, or {}",
+        CellsInWords(film), PixelsInstead(film), CollectInstead(film), kRemedy));
   if (package.light_field.encoding.bayer != BayerPattern::kNone)
     return UsageError(fmt::format(
         "the light field is densified, and frames of mosaics cannot be guarded: {}", kRemedy));
@@ -188,8 +194,12 @@ Result<void> CheckOrder(const Package& package, const FilmSettings& film) {
 Result<void> CheckFilmSettings(const Package& package, const FilmSettings& options,
                                const std::vector<FrameId>& given) {
   const FilmSettings film = Resolved(options, package);
+  // Advice about cells is made for the settings that were given.
+  FilmSettings unresolved = options;
+  unresolved.max_image_count = film.max_image_count;
   const std::vector<FrameId> frames = given.empty() ? package.FrameIds() : given;
-  LF_RETURN_IF_ERROR(CheckRebinnedRays(package, film, frames));
+  LF_RETURN_IF_ERROR(CheckMode(unresolved));
+  LF_RETURN_IF_ERROR(CheckRebinnedRays(package, unresolved, frames));
   const std::optional<size_t>& most = package.choices.max_image_count;
   if (most && *film.max_image_count > *most)
     return UsageError(fmt::format(
@@ -197,9 +207,10 @@ Result<void> CheckFilmSettings(const Package& package, const FilmSettings& optio
         "frame: give lfrenderer at most this {{max_images}}, or make the package again",
         package.name, *most));
   LF_RETURN_IF_ERROR(CheckOrder(package, film));
-  LF_RETURN_IF_ERROR(CheckRecordingTimes(package, film));
-  LF_RETURN_IF_ERROR(CheckShard(film));
-  if (package.whole_virtual_count > 0 && film.guard) LF_RETURN_IF_ERROR(CheckGuard(package, film));
+  LF_RETURN_IF_ERROR(CheckRecordingTimes(package, unresolved));
+  LF_RETURN_IF_ERROR(CheckShard(unresolved));
+  if (package.whole_virtual_count > 0 && film.guard)
+    LF_RETURN_IF_ERROR(CheckGuard(package, unresolved));
   if (package.whole_virtual_count > 0 && !film.guard &&
       (film.stop_when.samples || film.require.samples))
     return UsageError(

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lf/film/develop/frame_file.h"
@@ -112,7 +113,7 @@ TEST_F(FilmRendererTest, FramesAreThoseOfAFolderInEveryMode) {
       SCOPED_TRACE(std::string(NameOf(mode)) + " " + NameOf(weights));
       options_.mode = mode;
       options_.lens_weights = weights;
-      options_.rebin.max_cells = 100000;
+      options_.rebin.max_cells = options_.Rebins() ? 100000 : 0;
       const auto renderer = Open();
       Finish(*renderer);
       ASSERT_EQ(renderer->frame_count(), 3u);
@@ -244,12 +245,12 @@ TEST_F(FilmRendererTest, AHybridCompletesALensBeyondTheCapture) {
     ASSERT_FALSE(frame.picture.interpolated.empty());
     EXPECT_GT(frame.picture.interpolated.at(40, 30), 0.2);
     EXPECT_LT(frame.picture.interpolated.at(40, 30), 0.9);
-    options_.mode = RenderMode::kCollect;
+    const FilmSettings hybrid = std::exchange(options_, {});
     const auto collected = Open();
     Finish(*collected);
     EXPECT_EQ(renderer->plate(1), collected->plate(1));
     EXPECT_NE(collected->Develop(1)->picture.rgb.pixels(), frame.picture.rgb.pixels());
-    options_.mode = RenderMode::kHybrid;
+    options_ = hybrid;
     ExpectSame(OfFolder(renderer->id(1)), frame.picture.rgb);
   }
 }
@@ -285,6 +286,7 @@ TEST_F(FilmRendererTest, CellsRefuseAShutter) {
               std::string::npos);
   }
   options_.mode = RenderMode::kCollect;
+  options_.rebin = {};
   film_.whole_virtual_count = 1;
   const auto guarded = FilmRenderer::Open(film_, options_, work_, {}, pool_);
   ASSERT_FALSE(guarded);
@@ -356,7 +358,7 @@ TEST_F(FilmRendererTest, AFrameThatHasAllItsRaysIsNotCutShort) {
   for (const RenderMode mode : {RenderMode::kCollect, RenderMode::kRebin, RenderMode::kHybrid}) {
     SCOPED_TRACE(std::string(NameOf(mode)));
     options_.mode = mode;
-    options_.rebin.max_cells = 100000;
+    options_.rebin.max_cells = options_.Rebins() ? 100000 : 0;
     const auto whole = Open();
     Finish(*whole);
     FilmRenderer renderer(whole->setup(), whole->setup().frames());

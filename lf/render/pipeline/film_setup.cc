@@ -56,7 +56,7 @@ Result<std::unique_ptr<FilmSetup>> FilmSetup::Make(Package package, const FilmSe
                                                    std::vector<FrameId> frames, ThreadPool& pool,
                                                    std::unique_ptr<LfImageStore> store) {
   const FilmSettings resolved = Resolved(film, package);
-  LF_RETURN_IF_ERROR(CheckFilmSettings(package, resolved, frames));
+  LF_RETURN_IF_ERROR(CheckFilmSettings(package, film, frames));
   std::unique_ptr<FilmSetup> setup(
       new FilmSetup(std::move(package), resolved, work, std::move(frames), pool));
   setup->store_ = std::move(store);

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "lf/camera/render_camera.h"
 #include "lf/core/result.h"
@@ -16,6 +17,13 @@ namespace lf {
 
 // Returns true if the setting with this key (setting_table.h) changes only renders with cells.
 bool IsOfCells(std::string_view key);
+
+// Returns true if the setting with this key changes only renders that rebin.
+bool IsOfRebinning(std::string_view key);
+
+// Returns kUsage if the mode is kCollect, but a setting for which IsOfRebinning() is true differs
+// from its default, because it would change nothing.
+Result<void> CheckMode(const FilmSettings& film);
 
 // Returns film.rebin.interpolation. Returns instead of kAuto
 //   kCells   if a setting for which IsOfCells() is true differs from its default, or if the mode is
@@ -54,7 +62,17 @@ Result<void> CheckShutter(bool has_shutter, const FilmSettings& film, bool is_gu
 Result<void> CheckMaxImages(const FilmSettings& film);
 
 // Returns what advice calls the use of pixels instead of cells: "{interpolation pixels}", followed
-// by the settings that must be left out.
-std::string PixelsInstead(const FilmSettings& film);
+// by the settings that must be left out. Resolved() may have replaced settings of a film, so that
+// advice is made for the film that was given.
+//   also  further settings that must be left out
+std::string PixelsInstead(const FilmSettings& film, std::vector<std::string> also = {});
+
+// Returns what advice calls the collection of frames without rebinned rays: "{mode collect}",
+// followed by the settings that must be left out.
+std::string CollectInstead(const FilmSettings& film);
+
+// Returns what messages call the use of cells: "{mode rebin} with {interpolation cells}", followed
+// by the setting that has chosen cells unless {interpolation} has.
+std::string CellsInWords(const FilmSettings& film);
 
 }  // namespace lf

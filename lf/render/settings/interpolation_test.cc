@@ -55,6 +55,32 @@ TEST(Interpolation, ACollectedFilmKeepsNeither) {
   EXPECT_TRUE(CheckInterpolation(film));
 }
 
+// Settings of rebinned rays would change nothing in frames that have none.
+TEST(Interpolation, CollectionRefusesSettingsOfRebinnedRays) {
+  size_t count = 0;
+  for (const Setting& setting : SettingTable()) {
+    if (setting.key == "mode") continue;
+    for (const RenderMode mode : {RenderMode::kCollect, RenderMode::kRebin, RenderMode::kHybrid}) {
+      FilmSettings film;
+      film.mode = mode;
+      EXPECT_TRUE(CheckMode(film));
+      ASSERT_TRUE(setting.set(testing::AnotherOf(setting), &film));
+      const Result<void> checked = CheckMode(film);
+      const bool is_refused = mode == RenderMode::kCollect && IsOfRebinning(setting.key);
+      EXPECT_EQ(!checked, is_refused) << setting.key;
+      if (checked) continue;
+      ++count;
+      EXPECT_EQ(checked.error().kind, ErrorKind::kUsage);
+      EXPECT_EQ(checked.error().message.find("{" + std::string(setting.key) + " "), 0u);
+      EXPECT_EQ(CollectInstead(film), "{mode collect} without {" + std::string(setting.key) + "}");
+    }
+  }
+  EXPECT_GT(count, 20u);
+  EXPECT_TRUE(IsOfRebinning("alpha"));
+  EXPECT_TRUE(IsOfRebinning("nearest"));
+  EXPECT_FALSE(IsOfRebinning("lens_weights"));
+}
+
 TEST(Interpolation, OnlyCellsAloneHaveNoLensWeights) {
   for (const RayInterpolation way : {RayInterpolation::kPixels, RayInterpolation::kCells})
     for (const RenderMode mode : {RenderMode::kCollect, RenderMode::kRebin, RenderMode::kHybrid})
@@ -130,7 +156,8 @@ TEST(Interpolation, CellsRefuseWhatTheyCannotRender) {
       EXPECT_NE(message.find(one.words), std::string::npos) << message;
       EXPECT_NE(message.find(std::string("{mode ") + NameOf(mode) + "}"), std::string::npos);
       EXPECT_NE(message.find("use {interpolation pixels}"), std::string::npos) << message;
-      EXPECT_NE(message.find("{mode collect}"), std::string::npos) << message;
+      EXPECT_NE(message.find("{mode collect} without {interpolation}"), std::string::npos)
+          << message;
     }
 }
 
@@ -151,6 +178,38 @@ TEST(Interpolation, TheRemedyNamesTheSettingsThatMustGo) {
   film.rebin.reparameterise = false;
   EXPECT_EQ(PixelsInstead(film), "{interpolation pixels} without {sigma_st}, {reparameterise}");
   EXPECT_NE(CheckShutter(true, film, false).error().message.find(PixelsInstead(film)),
+            std::string::npos);
+  EXPECT_EQ(PixelsInstead(film, {"{kept edges}"}),
+            "{interpolation pixels} without {sigma_st}, {reparameterise}, {kept edges}");
+}
+
+// A message says which setting has chosen cells, if they were not asked for.
+TEST(Interpolation, CellsAreNamedWithTheSettingThatChoseThem) {
+  FilmSettings film = Rebinned(RenderMode::kRebin);
+  film.lens_weights = LensWeights::kNone;
+  EXPECT_EQ(CellsInWords(film),
+            "{mode rebin} with {interpolation cells} (chosen by {lens_weights none})");
+  film.rebin.query.lens_sets = 2;
+  EXPECT_EQ(CellsInWords(film),
+            "{mode rebin} with {interpolation cells} (chosen by {lens_sets 2})");
+  film.rebin.interpolation = RayInterpolation::kCells;
+  EXPECT_EQ(CellsInWords(film), "{mode rebin} with {interpolation cells}");
+}
+
+// Lens weights state a transmission, so that a remedy that keeps it must leave them on.
+TEST(Interpolation, TheRemedyForATransmissionHasLensWeights) {
+  std::vector<RenderCamera> cameras(1);
+  cameras[0].transmission = std::make_shared<const Transmission>(*Transmission::FromText("ff"));
+  FilmSettings film = Rebinned(RenderMode::kRebin);
+  film.lens_weights = LensWeights::kNone;
+  EXPECT_NE(CheckLenses(cameras, film)
+                .error()
+                .message.find("use {interpolation pixels} or {mode collect}, both without "
+                              "{lens_weights none}, or leave"),
+            std::string::npos);
+  film = Rebinned(RenderMode::kHybrid, RayInterpolation::kCells);
+  film.smooth_below = 2;
+  EXPECT_NE(CheckLenses(cameras, film).error().message.find("both without {smooth_below}, or"),
             std::string::npos);
 }
 
