@@ -391,9 +391,11 @@ Result<RenderReport> Renderer::End() {
         "{}: all frames are black, because no pixel of the {} LF images has a ray for them: "
         "check {}",
         folder_.output_folder.string(), totals_.selected_image_count,
-        setup_->film().mode == RenderMode::kRebin
+        setup_->film().mode == RenderMode::kRebin && KeepsCells(setup_->film())
             ? "the masks of the LF images, {slab_position}, {slab_distance}, {r_st} and "
               "{r_uv}"
+        : totals_.rebinning && totals_.rebinning->kept == "edges"
+            ? "whether masks exclude all pixels, or {alpha} and {xi} keep none"
             : "whether masks exclude all pixels"));
   if (video_error) return *video_error;
   return std::move(totals_);

@@ -100,9 +100,10 @@ std::optional<VirtualLight> RenderReport::MeanVirtualLight() const {
 }
 
 bool RenderReport::IsBlack() const {
+  // The accepted rays of a guarded frame are those of recorded LF images alone.
   return AcceptedRays() == 0 &&
          std::all_of(frames.begin(), frames.end(), [](const FrameReport& frame) {
-           return frame.interpolated_share.value_or(0) == 0;
+           return frame.rays.virtual_count == 0 && frame.interpolated_share.value_or(0) == 0;
          });
 }
 

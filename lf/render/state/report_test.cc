@@ -81,6 +81,15 @@ TEST(Report, TheWorstOfTheRebinnedRaysCounts) {
   EXPECT_EQ(report.rebinning->kept, "some");
 }
 
+// A guarded frame of virtual LF images alone is no black frame, although it has no recorded rays.
+TEST(Report, LightOfVirtualImagesIsNotBlack) {
+  RenderReport report;
+  report.frames.resize(2);
+  EXPECT_TRUE(report.IsBlack());
+  report.frames[1].rays.virtual_count = 3;
+  EXPECT_FALSE(report.IsBlack());
+}
+
 TEST(Report, ReadsBackWhatItWrote) {
   RenderReport report;
   report.inputs = {{"seed", "5"}, {"estimator", "nearest"}};
