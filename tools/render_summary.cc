@@ -56,9 +56,7 @@ void WarnOfEmptyElements(const RenderReport& report) {
 // Reports how much of the pictures is interpolated, and from how many kept pixels or cells.
 void TellRebinning(const RenderReport& report) {
   if (!report.rebinning) return;
-  const bool are_pixels = std::find(report.inputs.begin(), report.inputs.end(),
-                                    std::pair<std::string, std::string>(
-                                        "interpolation", "pixels")) != report.inputs.end();
+  const bool are_pixels = report.rebinning->pixels.has_value();
   if (are_pixels && report.rebinning->looked_at_count == 0) {
     LogInfo("no pixels are kept: the lenses of these frames have no gaps");
     return;
@@ -77,12 +75,14 @@ void TellRebinning(const RenderReport& report) {
           ? ""
           : fmt::format(" ({:.1f} ns each)",
                         1e9 * rebinning.cpu_s / static_cast<double>(rebinning.looked_at_count));
-  LogInfo("{}: {}{} of {}LF pixels{}{}", are_pixels ? "kept" : "rebinned",
-          ShortNumber(static_cast<double>(rebinning.cell_count)), are_pixels ? "pixels" : "cells",
-          ShortNumber(static_cast<double>(rebinning.looked_at_count)), cost,
-          are_mixed ? fmt::format("; {:.1f} to {:.1f} % of a frame is interpolated", 100 * least,
-                                  100 * most)
-                    : "");
+  LogInfo(
+      "{}: {}{} of {}LF pixels{}{}", are_pixels ? "kept" : "rebinned",
+      ShortNumber(static_cast<double>(are_pixels ? rebinning.pixels->count : rebinning.cell_count)),
+      are_pixels ? "pixels" : "cells", ShortNumber(static_cast<double>(rebinning.looked_at_count)),
+      cost,
+      are_mixed
+          ? fmt::format("; {:.1f} to {:.1f} % of a frame is interpolated", 100 * least, 100 * most)
+          : "");
   if (rebinning.kept != "all")
     LogInfo(
         "{}: the picture therefore depends on --max-rays and on which frames are rendered together",

@@ -14,6 +14,7 @@ UNTRIED = {
     "match_exposure: match one part of the light field at a time (--exclude)": MEMORY,
     "render_memory: needs a plate of {} MiB for each frame": MEMORY,
     "render_memory: (without --max-rays, half of --memory is for rays": "is the end of a message that is provoked",
+    "film_renderer_save: --kept all: there was no room": "needs a film whose estimate of pixels is too low",
     "film_renderer_pixels: are those of another light field": "needs a damaged state",
     "film_renderer_pixels: so that the shards would not add up": "needs a film whose estimate of pixels is too low",
     "state_entries: , so that --resume cannot continue": TOO_SHORT,

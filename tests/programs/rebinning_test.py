@@ -3,7 +3,7 @@
 """Tests lfrenderer --mode rebin and hybrid: the bits do not depend on threads or kills, memory stays below its limit,
 and messages are correct.
 
-usage: rebinning_test.py LFRENDERER LFPREPROCESSOR
+usage: rebinning_test.py LFRENDERER LFPREPROCESSOR LFMERGE
 """
 import hashlib
 import itertools
@@ -23,7 +23,7 @@ import numpy as np
 import small_field
 from program_test_case import ProgramTestCase, wait_until
 
-RENDERER = PREPROCESSOR = None
+RENDERER = PREPROCESSOR = MERGE = None
 
 
 def digests(folder):
@@ -217,8 +217,8 @@ class RebinningTest(ProgramTestCase):
 
     def test_what_rebinning_cannot_do_is_refused(self):
         self.path()
-        for options in (["--stop-when", "samples>=3"], ["--require", "samples>=3"],
-                        ["--keep-plates"], ["--smooth-below", "2"]):
+        for options in (["--stop-when", "samples>=3"], ["--require", "samples>=3"], ["--smooth-below", "2"],
+                        ["--keep-plates", "--interpolation", "cells"], ["--keep-plates", "--lens-weights", "none"]):
             self.fails(2, ["--mode rebin"], *self.command("no", "--mode", "rebin", *options))
         self.fails(2, ["--interpolation pixels", "--sigma-st 0.7", "use --interpolation cells"],
                    *self.command("no", "--mode", "rebin", "--interpolation", "pixels", "--sigma-st", "0.7"))
@@ -248,6 +248,42 @@ class RebinningTest(ProgramTestCase):
         self.fails(2, ["--interpolation cells changes nothing"], PREPROCESSOR, self.field, self.folder / "path.yaml",
                    "-o", self.folder / "no", "--interpolation", "cells")
         self.render("defaults", "--alpha", "8", "--kept", "auto", "--max-rays", "0")
+
+    # A plate of kept pixels has what collection keeps, if all pixels are kept; lfmerge makes the frame of any.
+    def test_kept_pixels_have_plates(self):
+        self.path(aperture=0.02, frames=2)
+        self.render("collected", "--keep-plates")
+        for name, options in (("all", []), ("edges", ["--kept", "edges"]), ("noise", ["--stop-when", "noise<=0.0001"])):
+            frames = self.render(name, "--mode", "rebin", "--keep-plates", *options)
+            plates = sorted((self.folder / name).glob("*.plate"))
+            self.assertEqual(len(plates), 2)
+            merged = self.folder / f"merged-{name}"
+            self.succeeds(MERGE, *plates, "-o", merged, "--format", "exr-float", "--no-contact-sheet")
+            self.assertEqual(digests(merged), frames)
+        self.assertEqual(self.plate_words("all"), self.plate_words("collected"))
+        self.assertNotEqual(self.plate_words("edges"), self.plate_words("collected"))
+
+    def plate_words(self, out):
+        """Returns the sums and counts in the plates of a folder, without head and text (doc/formats/plate.md)."""
+        plates = [path.read_bytes() for path in sorted((self.folder / out).glob("*.plate"))]
+        return [plate[48 + int.from_bytes(plate[12:16], "little"):] for plate in plates]
+
+    def test_all_pixels_are_kept_or_the_render_does_not_begin(self):
+        self.path(aperture=0.02, frames=2)
+        for mode in ("rebin", "hybrid"):
+            options = ["--mode", mode, "--lens-weights", "none", "--interpolation", "pixels", "--kept", "all"]
+            self.fails(2, ["--kept all: frames ask for about", "--max-rays 1000 has no room", "use --kept auto"],
+                       *self.command("few-" + mode, *options, "--max-rays", "1000"))
+            self.assertFalse(list((self.folder / ("few-" + mode)).glob("frame_*")))
+            self.render(mode, *options)
+            rebinning = report(self.folder / mode)["rebinning"]
+            self.assertEqual((rebinning["kept"], rebinning["kept_share"]), ("all", 1))
+            self.assertEqual(rebinning["pixels"], rebinning["lf_pixels_looked_at"])
+            self.assertEqual((rebinning["cells"], rebinning["slabs"]), (0, 0))
+        self.render("auto", "--mode", "rebin", "--max-rays", "5000")
+        rebinning = report(self.folder / "auto")["rebinning"]
+        self.assertLessEqual(rebinning["pixels"], 5000)
+        self.assertAlmostEqual(rebinning["kept_share"], rebinning["pixels"] / rebinning["lf_pixels_looked_at"])
 
     # The reference back end queries a k-d tree element by element. If it uses the rays within reach, the result equals
     # the result of splats. If it uses the nearest rays (--nearest), it finds a ray for every point of the lens.
@@ -300,5 +336,5 @@ class RebinningTest(ProgramTestCase):
 
 
 if __name__ == "__main__":
-    RENDERER, PREPROCESSOR = sys.argv[1:3]
+    RENDERER, PREPROCESSOR, MERGE = sys.argv[1:4]
     unittest.main(argv=sys.argv[:1], verbosity=2)

@@ -66,13 +66,7 @@ FramePixels::FramePixels(const ImageIndex& index, std::vector<KeptFrame> frames,
       stored_values_(StoredValueTable(light_field_.encoding)),
       kept_(std::make_unique<KeptPixels>(std::max<size_t>(1, options.max_cells))),
       store_(std::make_unique<Store>(*this)) {
-  const size_t step = 1 + images_.size() / kCountedImages;
-  std::vector<double> counts((images_.size() + step - 1) / step);
-  pool_.ForEach(counts.size(), [&](size_t i) {
-    const SelectedImage& image = images_[i * step];
-    counts[i] = static_cast<double>(PixelsIn(RectsOf(image.id, image.rank)));
-  });
-  asked_ = std::accumulate(counts.begin(), counts.end(), 0.0) * static_cast<double>(step);
+  asked_ = CountAsked(images_);
   keeps_all_ = options_.kept == KeptRays::kAll ||
                (options_.kept == KeptRays::kAuto &&
                 asked_ <= kFittingShare * static_cast<double>(options_.max_cells));
@@ -85,6 +79,17 @@ FramePixels::FramePixels(const ImageIndex& index, std::vector<KeptFrame> frames,
 }
 
 FramePixels::~FramePixels() = default;
+
+// Returns the estimated number of pixels that frames ask for of these LF images.
+double FramePixels::CountAsked(std::span<const SelectedImage> images) const {
+  const size_t step = 1 + images.size() / kCountedImages;
+  std::vector<double> counts((images.size() + step - 1) / step);
+  pool_.ForEach(counts.size(), [&](size_t i) {
+    const SelectedImage& image = images[i * step];
+    counts[i] = static_cast<double>(PixelsIn(RectsOf(image.id, image.rank)));
+  });
+  return std::accumulate(counts.begin(), counts.end(), 0.0) * static_cast<double>(step);
+}
 
 const LfImageStore& FramePixels::store() const { return *store_; }
 
@@ -142,12 +147,20 @@ void FramePixels::Take(std::span<const BatchImage> images, uint32_t rank_end) {
 void FramePixels::Restore(KeptPixels kept, uint32_t ranks_done) {
   *kept_ = std::move(kept);
   ranks_done_ = ranks_done;
+  const auto end =
+      std::partition_point(images_.begin(), images_.end(),
+                           [&](const SelectedImage& image) { return image.rank < ranks_done; });
+  looked_at_earlier_ = CountAsked({images_.begin(), end});
 }
 
 FramePixels::Facts FramePixels::facts() const {
-  return {kept_->size(), looked_at_,
-          asked_,        static_cast<double>(cpu_ns_) * 1e-9,
-          keeps_all_,    kept_->limit() != UINT64_MAX};
+  Facts facts{kept_->size(), looked_at_,
+              asked_,        static_cast<double>(cpu_ns_) * 1e-9,
+              keeps_all_,    kept_->limit() != UINT64_MAX};
+  const double looked_at = static_cast<double>(looked_at_) + looked_at_earlier_;
+  if ((!facts.keeps_all || facts.is_full) && looked_at > 0)
+    facts.kept_share = std::min(1.0, static_cast<double>(facts.pixel_count) / looked_at);
+  return facts;
 }
 
 std::string FramePixels::Describe() const {

@@ -84,6 +84,9 @@ class FramePixels : public ImageConsumer {
     double cpu_s = 0;        // CPU time to choose and keep pixels, sum of all threads
     bool keeps_all = false;  // true: all pixels that frames ask for are kept; false: at edges only
     bool is_full = false;    // true: pixels were dropped because there were too many
+    // Share of the pixels that frames ask for, of the LF images so far, that are kept. 1 if all
+    // unmasked ones are.
+    double kept_share = 1;
   };
   Facts facts() const;
   // Returns a line of text for the log.
@@ -92,6 +95,7 @@ class FramePixels : public ImageConsumer {
  private:
   class Store;
   std::vector<PixelRect> RectsOf(LfImageId id, uint32_t rank) const;
+  double CountAsked(std::span<const SelectedImage> images) const;
 
   const LightField& light_field_;
   const std::vector<KeptFrame> frames_;
@@ -107,6 +111,7 @@ class FramePixels : public ImageConsumer {
   RebinOptions rebin_;  // options_.rebin, with the probability that fills the room
   uint32_t ranks_done_ = 0;
   uint64_t looked_at_ = 0;
+  double looked_at_earlier_ = 0;  // estimated number of LF pixels that an earlier run looked at
   std::atomic<int64_t> cpu_ns_ = 0;
 };
 

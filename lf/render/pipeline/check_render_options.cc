@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The functions of render.h that run before a render starts: they check its options, and put the LF
 // images in order.
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "lf/render/needs/film_order.h"
@@ -9,6 +11,7 @@
 #include "lf/render/pipeline/frame_source.h"
 #include "lf/render/pipeline/render.h"
 #include "lf/render/pipeline/resolved_settings.h"
+#include "lf/render/settings/interpolation.h"
 
 namespace lf {
 
@@ -16,10 +19,11 @@ Result<void> CheckRenderOptions(const Package& package, const RenderOptions& opt
   const FilmSettings& film = options.film;
   const FolderOptions& folder = options.folder;
   if (options.source != nullptr) LF_RETURN_IF_ERROR(options.source->Check(package, options));
-  if (film.mode == RenderMode::kRebin && folder.keep_plates)
+  if (film.mode == RenderMode::kRebin && KeepsCells(film) && folder.keep_plates)
     return UsageError(
-        "{keep_plates} cannot be used with {mode rebin}, which collects no rays and therefore has "
-        "no plates: leave it out, or use {mode hybrid}");
+        fmt::format("{{keep_plates}} cannot be used with {}, because a frame that is interpolated "
+                    "from cells has no sums of rays: leave it out, or use {} or {}",
+                    CellsInWords(film), PixelsInstead(film), CollectInstead(film)));
   LF_RETURN_IF_ERROR(CheckOutputs(package, options));
   LF_RETURN_IF_ERROR(CheckFilmSettings(package, film, options.frames));
   if (!folder.finish_early.empty() && (film.shard || !folder.resume))

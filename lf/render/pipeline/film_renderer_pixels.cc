@@ -80,6 +80,13 @@ Result<void> FilmRenderer::PreparePixels(const RunState* state) {
         "use more shards, increase {{max_rays}} or {{memory}}, or leave {{shard}} out",
         NameOf(film_.mode), film_.Collects() ? "gaps of lenses ask" : "frames ask",
         facts.asked * 1e-6, options.max_cells));
+  if (film_.rebin.kept == KeptRays::kAll && facts.asked > static_cast<double>(options.max_cells))
+    return UsageError(fmt::format(
+        "{{kept all}}: frames ask for about {:.3g} million pixels, but {{max_rays {}}}{} has no "
+        "room for all of them: increase {}, or use {{kept auto}}",
+        facts.asked * 1e-6, options.max_cells,
+        film_.rebin.max_cells == 0 ? ", which {memory} allows," : "",
+        film_.rebin.max_cells == 0 ? "{memory}" : "{max_rays}"));
   if (state == nullptr) return {};
   LF_ASSIGN_OR_RETURN(std::optional<RunState::Kept> saved,
                       state->LoadKept(id(0), RaysFrames(), pixels_->max_pixels(), setup_.pool()));

@@ -69,7 +69,16 @@ Result<void> FilmRenderer::SaveRays(RunState* state) {
 
 void FilmRenderer::End(RunState* state) {
   if (pixels_) state->RemoveRays();
+  if (pixels_ && pixels_->facts().is_full && film_.rebin.kept == KeptRays::kAll)
+    LogWarning(
+        "{{kept all}}: there was no room for all pixels that frames ask for, and only {:.1f} % of "
+        "them are kept: increase {{max_rays}} or {{memory}}",
+        100 * pixels_->facts().kept_share);
   if (!rebinned_) return;
+  if (rebinned_->facts().is_full && film_.rebin.kept == KeptRays::kAll)
+    LogWarning(
+        "{{kept all}}: there was no room for the cells of all rays, and some of them were dropped: "
+        "increase {{max_rays}} or {{memory}}");
   if (rebinned_->facts().is_too_coarse)
     LogWarning(
         "some cells of rebinned rays are so wide that they got more LF pixels than they can "
@@ -83,17 +92,22 @@ void FilmRenderer::AddTo(RenderReport* totals) const {
   totals->collect_cpu_s += times().collect_cpu_s;
   if (pixels_) {
     const FramePixels::Facts facts = pixels_->facts();
-    totals->AddRebinning({1, facts.pixel_count, facts.looked_at, facts.cpu_s,
-                          facts.is_full     ? "some"
-                          : facts.keeps_all ? "all"
-                                            : "edges"});
+    totals->AddRebinning({.looked_at_count = facts.looked_at,
+                          .cpu_s = facts.cpu_s,
+                          .kept = facts.is_full     ? "some"
+                                  : facts.keeps_all ? "all"
+                                                    : "edges",
+                          .pixels = RebinReport::Pixels{facts.pixel_count, facts.kept_share}});
   }
   if (!rebinned_) return;
   const RebinnedRays::Facts facts = rebinned_->facts();
-  totals->AddRebinning({facts.section_count, facts.cell_count, facts.looked_at, facts.cpu_s,
-                        facts.is_full     ? "some"
-                        : facts.keeps_all ? "all"
-                                          : "edges"});
+  totals->AddRebinning({.slab_count = facts.section_count,
+                        .cell_count = facts.cell_count,
+                        .looked_at_count = facts.looked_at,
+                        .cpu_s = facts.cpu_s,
+                        .kept = facts.is_full     ? "some"
+                                : facts.keeps_all ? "all"
+                                                  : "edges"});
 }
 
 Result<void> FilmRenderer::WritePlateOf(size_t f, const std::filesystem::path& path,
@@ -101,7 +115,9 @@ Result<void> FilmRenderer::WritePlateOf(size_t f, const std::filesystem::path& p
                                         std::span<const SkippedImage> skipped) const {
   FrameProgress progress = Progress(f);
   progress.ranks_done = RankOfEnd(f);  // must not depend on the division into passes
-  PlateEntries text = state.PlateText(id(f), progress, moments(f));
+  // A plate that was collected from kept pixels is not the one whose noise is measured.
+  if (CollectsKept()) progress.rays = frames_[f].kept_rays;
+  PlateEntries text = state.PlateText(id(f), progress, CollectsKept() ? nullptr : moments(f));
   std::vector<const FrameLens*> of_frame;
   for (const FrameLens& lens : lenses(f)) of_frame.push_back(&lens);
   if (const FrameLens* const all = all_lens(f)) of_frame.push_back(all);

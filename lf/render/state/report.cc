@@ -130,6 +130,10 @@ void RebinReport::Add(const RebinReport& other) {
   looked_at_count += other.looked_at_count;
   cpu_s += other.cpu_s;
   if (other.kept == "some" || kept == "all") kept = other.kept;
+  if (!other.pixels) return;
+  if (!pixels) pixels.emplace();
+  pixels->count = std::max(pixels->count, other.pixels->count);
+  pixels->kept_share = std::min(pixels->kept_share, other.pixels->kept_share);
 }
 
 FrameReport MakeFrameReport(FrameId frame, const FrameRays& rays, const DevelopedFrame& developed) {
@@ -208,6 +212,10 @@ std::string ToJson(const RenderReport& report) {
                          {"lf_pixels_looked_at", report.rebinning->looked_at_count},
                          {"kept", report.rebinning->kept},
                          {"cpu_s", report.rebinning->cpu_s}};
+  if (report.rebinning && report.rebinning->pixels) {
+    json["rebinning"]["pixels"] = report.rebinning->pixels->count;
+    json["rebinning"]["kept_share"] = report.rebinning->pixels->kept_share;
+  }
   return RecordText(json);
 }
 

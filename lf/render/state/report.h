@@ -82,17 +82,24 @@ struct FrameReport {
   std::optional<FrameNoise> noise = std::nullopt;
 };
 
-// Facts about rebinned rays (render/hybrid/rebinned_rays.h).
+// Facts about rebinned rays (render/hybrid/rebinned_rays.h), or about kept pixels
+// (render/hybrid/frame_pixels.h).
 struct RebinReport {
-  size_t slab_count = 0;         // largest number of slabs in a pass
-  uint64_t cell_count = 0;       // largest number of cells at the end of a pass
-  uint64_t looked_at_count = 0;  // number of LF pixels that the coverage maps cover
-  double cpu_s = 0;              // CPU time to make cells from LF pixels, sum of all threads
+  size_t slab_count = 0;    // largest number of slabs in a pass; 0 with kept pixels
+  uint64_t cell_count = 0;  // largest number of cells at the end of a pass; 0 with kept pixels
+  // Number of LF pixels that the coverage maps cover or, with kept pixels, that frames ask for.
+  uint64_t looked_at_count = 0;
+  double cpu_s = 0;  // CPU time to keep cells or pixels, sum of all threads
   // Says which of the rays that finished frames need were kept. "all": all of them; "edges": only
   // rays at edges in the LF images; "some": not even all of these, because there was no room.
   // Unless it is "all", the picture of a frame depends on which other frames are rendered in the
   // same pass.
   std::string kept = "all";
+  struct Pixels {
+    uint64_t count = 0;     // largest number of kept pixels at the end of a pass
+    double kept_share = 1;  // FramePixels::Facts::kept_share, the smallest of all passes
+  };
+  std::optional<Pixels> pixels = std::nullopt;  // unset with cells
 
   // Adds the facts of other passes: of counts that are the largest of a pass, the larger is kept.
   void Add(const RebinReport& other);

@@ -88,6 +88,11 @@ Result<RenderReport> ParseReport(std::string_view text, const std::string& name)
       rebinning_fields.Get("lf_pixels_looked_at", &rebinning.looked_at_count);
       rebinning_fields.Get("cpu_s", &rebinning.cpu_s);
       rebinning_fields.Get("kept", &rebinning.kept);
+      if (rebinning_fields.Find("pixels") != nullptr) {
+        rebinning.pixels.emplace();
+        rebinning_fields.Get("pixels", &rebinning.pixels->count);
+        rebinning_fields.Get("kept_share", &rebinning.pixels->kept_share);
+      }
     }
     for (const Json* item : fields.List("skipped_lf_images")) {
       RecordFields skipped_fields(*item, &fault);

@@ -71,6 +71,7 @@ TEST(Report, TheWorstOfTheRebinnedRaysCounts) {
   RenderReport report;
   report.AddRebinning({2, 50, 100, 1.5, "edges"});
   report.AddRebinning({1, 70, 10, 0.5, "all"});
+  EXPECT_FALSE(report.rebinning->pixels);
   EXPECT_EQ(report.rebinning->slab_count, 2u);
   EXPECT_EQ(report.rebinning->cell_count, 70u);
   EXPECT_EQ(report.rebinning->looked_at_count, 110u);
@@ -88,6 +89,24 @@ TEST(Report, LightOfVirtualImagesIsNotBlack) {
   EXPECT_TRUE(report.IsBlack());
   report.frames[1].rays.virtual_count = 3;
   EXPECT_FALSE(report.IsBlack());
+}
+
+// A report names kept pixels, and not cells, and reads them back.
+TEST(Report, TheLeastShareOfKeptPixelsCounts) {
+  RenderReport report;
+  report.AddRebinning({.looked_at_count = 100, .pixels = RebinReport::Pixels{90, 0.9}});
+  report.AddRebinning(
+      {.looked_at_count = 200, .kept = "some", .pixels = RebinReport::Pixels{80, 0.4}});
+  report.AddRebinning({.looked_at_count = 10, .pixels = RebinReport::Pixels{10, 1}});
+  const auto json = nlohmann::json::parse(ToJson(report));
+  EXPECT_EQ(json["rebinning"]["pixels"], 90);
+  EXPECT_EQ(json["rebinning"]["cells"], 0);
+  EXPECT_EQ(json["rebinning"]["kept_share"], 0.4);
+  const RenderReport again = ParseReport(ToJson(report), "report").value();
+  ASSERT_TRUE(again.rebinning && again.rebinning->pixels);
+  EXPECT_EQ(again.rebinning->pixels->count, 90u);
+  EXPECT_EQ(again.rebinning->pixels->kept_share, 0.4);
+  EXPECT_EQ(again.rebinning->looked_at_count, 310u);
 }
 
 TEST(Report, ReadsBackWhatItWrote) {
