@@ -164,6 +164,25 @@ void WarnOfFrames(const RenderReport& report, double limit, const Badness& badne
   if (count > 0) warn(count, *worst);
 }
 
+// Returns what a frame shows for the part of its lens that is beyond the LF cameras.
+std::string LightBeyondCapture(const FrameReport& frame) {
+  constexpr const char* kCutOff =
+      "This part gets no rays, and the bokeh (blur disks) are cut off there. ";
+  const double interpolated = frame.interpolated_share.value_or(0);
+  const double uncovered = frame.weighed->coverage.uncovered_share;
+  if (interpolated == 0) return kCutOff;
+  std::string words = fmt::format(
+      "The light of the nearest LF cameras stands for this part, in {:.0f} % of the picture. Blur "
+      "is "
+      "as strong as that of the whole lens, but blur disks keep the shape of the capture. ",
+      100 * interpolated);
+  if (uncovered - interpolated > kMuchUncovered)
+    words += fmt::format(
+        "About {:.0f} % of the lens are too far from all LF cameras, and bokeh are cut off there. ",
+        100 * (uncovered - interpolated));
+  return words;
+}
+
 void WarnOfLenses(const RenderReport& report) {
   constexpr double kFewImages = 3.95;
   WarnOfFrames(
@@ -176,9 +195,9 @@ void WarnOfLenses(const RenderReport& report) {
             fitting_w = std::min(fitting_w, frame.weighed->coverage.fitting_diameter_w);
         LogWarning(
             "in {} of {} frames a part of the lens is beyond the LF cameras, most of all in frame "
-            "{}: {:.0f} %. This part gets no rays, and the bokeh (blur disks) are cut off there. "
-            "{}a camera nearer to the middle of the capture would help",
+            "{}: {:.0f} %. {}{}a camera nearer to the middle of the capture would help",
             count, report.frames.size(), worst.frame.value, 100 * coverage.uncovered_share,
+            LightBeyondCapture(worst),
             fitting_w > 0 ? fmt::format("An aperture of at most {:.4g} world units, or ", fitting_w)
                           : "Only ");
       });

@@ -63,6 +63,16 @@ class WideLensTest(ProgramTestCase):
             self.assertAlmostEqual(report["fitting_aperture_w"], 2 * (COVERED - 0.002), delta=1e-6)
             self.assertIn("An aperture of at most 0.074 ", messages)
 
+    def test_a_hybrid_tells_what_it_completes(self):
+        field = write_field(self.folder / "field", png16, lf_transfer="linear")
+        _, messages, report = self.frame(field, 2.4 * COVERED, "--mode", "hybrid")
+        # More than in the middle of the picture is missing at its borders, which not all LF cameras see.
+        self.assertGreater(report["interpolated_share"], report["uncovered_share"])
+        self.assertLess(report["interpolated_share"], 2 * report["uncovered_share"])
+        self.assertIn(f"in {100 * report['interpolated_share']:.0f} % of the picture", messages)
+        self.assertIn("keep the shape of the capture", messages)
+        self.assertNotIn("cut off", messages)
+
     def test_a_lens_within_the_capture_is_not_told_of(self):
         field = write_field(self.folder / "field", png16, lf_transfer="linear")
         _, messages, report = self.frame(field, 1.8 * COVERED)
