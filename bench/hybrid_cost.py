@@ -16,6 +16,8 @@ rebinning for each LF pixel that it examined: for its probability, the choice, a
 --frames-share S  render only this share of the frames of each movement, over the same path
 
 --field DIR  folder of the light field, which is kept; an existing one is used again
+
+A table of some movements has a marker and a record of its own: hybrid_cost.py stack,sharp
 """
 import argparse
 import json
@@ -61,7 +63,7 @@ def measure(build, field, folder, name, size, runs, frames_share):
         row["path"].write_text(workloads.path_yaml(workload, size))
     for _ in range(runs):
         for row in rows:
-            seconds, usage, report = workloads.render(build, field, row["path"], folder / "out", 1,
+            seconds, usage, report = workloads.render(build, field, row["path"], folder / name, 1,
                                                       *row["options"])
             row["seconds"].append(round(seconds, 3))
             row["cpu_s"].append(round(usage.ru_utime + usage.ru_stime, 3))
@@ -130,7 +132,9 @@ def main():
                       f"{record['density']:g} of the thesis's LF cameras, "
                       + (f"{share:g} of its frames, " if share != 1 else "")
                       + f"medians of {record['runs']} runs, one thread.", ""] + table(record)) + "\n"
-    results.publish(arguments, "hybrid_cost.py", record, text)
+    names = list(dict.fromkeys(row["workload"] for row in record["rows"]))
+    words = "" if names == list(workloads.WORKLOADS) else " " + ",".join(names)
+    results.publish(arguments, "hybrid_cost.py" + words, record, text)
 
 
 if __name__ == "__main__":

@@ -3,13 +3,15 @@
 """Measures the CPU time of one more frame of 1920 x 1080 elements in a film: collected, from kept pixels, and from
 cells.
 
-usage: bench/kept_frames.py BUILD_DIR [--frames 6] [--runs 3] [--name NAME] [--write doc/rebinning.md]
-       bench/kept_frames.py --again JSON [--write doc/rebinning.md]
+usage: bench/kept_frames.py BUILD_DIR [--frames 6] [--runs 3] [--field DIR] [--name NAME] [--write PAGE]
+       bench/kept_frames.py --again JSON [--write PAGE]
 
 Films of one frame and of --frames equal frames are rendered in turns by one thread of lfrenderer, from 225 LF images of
 640 x 424 pixels by lfsynth, beside it, with a lens of 3 camera distances. A frame costs the difference of their CPU
 times, divided by the number of frames that one film has more. This contains the plate, its development and the EXR
 file. The median of the runs is shown.
+
+--field DIR  folder of the light field, which is kept; an existing one is used again
 """
 import argparse
 import json
@@ -23,11 +25,12 @@ import lens_weights
 import record as results
 
 SIZE, ELEMENTS, SPACING_M = "640x424", (2400, 1350), 0.003  # synthetic_path() takes 0.8 of the field of view
+DEFAULTS = "--estimator bilinear --lens-weights auto"
 WAYS = {
-    "collected": "--mode collect",
-    "all pixels that frames ask for": "--mode rebin --max-rays 8M",
-    "a million pixels": "--mode rebin --max-rays 1M",
-    "a million cells": "--mode rebin --interpolation cells --max-rays 1M",
+    "collected": f"--mode collect {DEFAULTS}",
+    "all pixels that frames ask for": f"--mode rebin {DEFAULTS} --max-rays 8M",
+    "a million pixels": f"--mode rebin {DEFAULTS} --max-rays 1M",
+    "a million cells": f"--mode rebin {DEFAULTS} --interpolation cells --max-rays 1M",
 }
 
 
@@ -38,11 +41,11 @@ def path_text(calibration, frames):
     return text.replace("frames: 1\n", f"frames: {frames}\n")
 
 
-def measure(build, folder, frames, runs):
+def measure(build, field, folder, frames, runs):
     """Returns the rows of the table."""
-    field = folder / "field"
-    results.call([build / "bin/lfsynth", "still-life", "-o", field, "--count", 225, "--jitter", 0.4, "--spacing",
-                  SPACING_M, "--size", SIZE, "-q"])
+    if not (field / "transforms.json").exists():
+        results.call([build / "bin/lfsynth", "still-life", "-o", field, "--count", 225, "--jitter", 0.4, "--spacing",
+                      SPACING_M, "--size", SIZE, "-q"])
     rows = [{"way": way, "kept": 0, "of": 0, "cpu_s": {"1": [], str(frames): []}} for way in WAYS]
     for _ in range(runs):
         for row in rows:
@@ -73,14 +76,17 @@ def main():
     parser.add_argument("build", type=pathlib.Path, nargs="?")
     parser.add_argument("--frames", type=int, default=6)
     parser.add_argument("--runs", type=int, default=3)
+    parser.add_argument("--field", type=pathlib.Path)
     results.add_options(parser)
     arguments = parser.parse_args()
     if arguments.again:
         record = json.loads(arguments.again.read_text())
     elif arguments.build:
         record = results.context() | {"frames": arguments.frames, "runs": arguments.runs}
-        with tempfile.TemporaryDirectory() as folder:
-            record["rows"] = measure(arguments.build.resolve(), pathlib.Path(folder), arguments.frames, arguments.runs)
+        with tempfile.TemporaryDirectory() as temporary:
+            folder = pathlib.Path(temporary)
+            record["rows"] = measure(arguments.build.resolve(), arguments.field or folder / "field", folder,
+                                     arguments.frames, arguments.runs)
     else:
         parser.error("BUILD_DIR or --again is needed")
     text = "\n".join([f"{results.sentence(record)} One thread, medians of {record['runs']} runs.", "",

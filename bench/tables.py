@@ -88,6 +88,9 @@ TABLES = {
                   "--runs 1 --frames 2 --scale 0.2 --only shop --modes collect"),
     "ray_usage": ("quality", "bench/ray_usage.py {build}", "--density 0.001"),
     "selection_table": ("performance", "bench/selection_table.py {build}", ""),
+    "kept_frames": ("rebinning", "bench/kept_frames.py {build}", "--frames 2 --runs 1"),
+    "hybrid_cost-stack-sharp": ("rebinning", "bench/hybrid_cost.py {build} --runs 1 --density 0.02 --size 240x160 "
+                                "--frames-share 0.25 --only stack,sharp", "--density 0.005 --size 48x32"),
     "rebinning_peers": ("rebinning", "bench/rebinning_peers.py {build}", "--runs 2"),
     "kernels": ("performance", "bench/kernel_table.py {build} --rounds 3", "--cases disk --rounds 1"),
     "kernels-of-elements": ("performance", "bench/kernel_table.py {build} --rounds 3 --cases "
