@@ -2,6 +2,8 @@
 #include "lf/rebinning/keep_pixels.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "lf/core/check.h"
@@ -94,7 +96,15 @@ KeptImage KeepPixels(LfImageId id, const Intrinsics& k, const LfPixels& pixels,
     image.values.reserve(count * image.value_count());
   }
   Image<uint16_t> p;
-  if (!keeps_all) ProbabilityMap(pixels, image.rect, stored_values, options.probability, &p);
+  if (!keeps_all) {
+    ProbabilityMap(pixels, image.rect, stored_values, options.probability, &p);
+    // The expected number and four standard deviations; vectors that grow would take twice as much.
+    const uint64_t sum = std::accumulate(p.pixels().begin(), p.pixels().end(), uint64_t{0});
+    const double expected = static_cast<double>(sum) / 65535;
+    const auto count = static_cast<size_t>(expected + 4 * std::sqrt(expected));
+    image.places.reserve(count);
+    image.values.reserve(count * image.value_count());
+  }
   PixelKeeper keeper(pixels, opacity, &image);
   const PixelChances chances(options.seed, id);
   Runs runs;
@@ -118,8 +128,11 @@ KeptImage KeepPixels(LfImageId id, const Intrinsics& k, const LfPixels& pixels,
       for (const uint32_t i : chosen) keeper.Keep(begin + static_cast<int>(i), y);
     }
   }
-  image.places.shrink_to_fit();
-  image.values.shrink_to_fit();
+  // A copy would need more memory than a small rest of the reserve, and leave a hole.
+  if (image.places.size() < image.places.capacity() / 32 * 31) {
+    image.places.shrink_to_fit();
+    image.values.shrink_to_fit();
+  }
   return image;
 }
 

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lf/rebinning/kept_pixels.h"
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -73,6 +77,24 @@ class PixelWriter {
 constexpr int kTile_px = 512;
 constexpr int kMargin_px = 32;
 constexpr size_t kMostValues = 5;  // KeptImage::value_count()
+static_assert(size_t{kTile_px + 2 * kMargin_px} * (kTile_px + 2 * kMargin_px) ==
+              KeptPixels::kTilePixels);
+
+// Returns freed memory to the system; glibc keeps that between blocks that are in use.
+void GiveMemoryBack() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+}
+
+// Returns the memory of an LF image besides its pixels: its entry in the map, the heads of its four
+// blocks of memory, its mask, and its depths.
+size_t OtherBytes(const KeptImage& image) {
+  constexpr size_t kMapNodeBytes = 48;
+  constexpr size_t kHeadBytes = 16;
+  return sizeof(KeptImage) + kMapNodeBytes + 4 * kHeadBytes +
+         image.masked.capacity() * sizeof(uint64_t) + image.depths.numbers.size_bytes();
+}
 
 // Fills the pixels of `around` whose columns and rows have the same remainders modulo `step` as
 // (first_x, first_y), and passes those of `tile` that are not masked to the writer. Returns false,
@@ -191,27 +213,40 @@ void KeptPixels::Add(std::vector<KeptImage> images, ThreadPool& pool) {
     const auto [place, is_new] = images_.emplace(id, std::move(image));
     LF_CHECK(is_new);
     added.push_back(&place->second);
+    other_bytes_ += OtherBytes(place->second);
   }
   std::atomic<size_t> count = 0;
   pool.ForEach(added.size(), [&](size_t i) { count += Drop(limit_, added[i]); });
   size_ += count;
-  if (size_ <= max_pixels_) return;
-  std::vector<KeptImage*> all;
-  for (auto& [id, image] : images_) all.push_back(&image);
-  while (size_ > max_pixels_) {
+  if (!is_too_small()) return;
+  while (is_too_small() && size_ > 0) {
     limit_ -= limit_ / 8;
-    count = 0;
-    pool.ForEach(all.size(), [&](size_t i) { count += Drop(limit_, all[i]); });
-    size_ = count;
+    DropFromAll(pool);
   }
 }
 
+// Drops the pixels at and above the limit. After each sixteenth of the pixels, gives freed memory
+// back, because threads copy what is left from the memory of one thread to that of another.
+void KeptPixels::DropFromAll(ThreadPool& pool) {
+  const size_t most = std::max(kFewTogether, size_ / 16);
+  std::atomic<size_t> count = 0;
+  for (auto next = images_.begin(); next != images_.end();) {
+    std::vector<KeptImage*> together;
+    for (size_t pixels = 0; next != images_.end() && pixels < most; ++next) {
+      pixels += next->second.places.size();
+      together.push_back(&next->second);
+    }
+    pool.ForEach(together.size(), [&](size_t i) { count += Drop(limit_, together[i]); });
+    GiveMemoryBack();
+  }
+  size_ = count;
+}
+
 size_t KeptPixels::size_bytes() const {
-  size_t bytes = 0;
+  size_t bytes = other_bytes_;
   for (const auto& [id, image] : images_)
-    bytes += sizeof(KeptImage) + image.places.capacity() * sizeof(uint32_t) +
-             image.values.capacity() * sizeof(uint16_t) +
-             image.masked.capacity() * sizeof(uint64_t) + image.depths.numbers.size_bytes();
+    bytes +=
+        image.places.capacity() * sizeof(uint32_t) + image.values.capacity() * sizeof(uint16_t);
   return bytes;
 }
 

@@ -6,7 +6,8 @@
 // If there are more pixels than may be kept, those with the largest hashes are dropped: a limit, at
 // and above which hashes are dropped, is lowered by an eighth at a time. A pixel whose hash is
 // below the limit was never dropped, so that the kept pixels depend only on which pixels were
-// added, never on their order or the number of threads.
+// added, never on their order or the number of threads. Masks and depths cannot be dropped; beyond
+// KeptPixels::kFreeBytes, they count as pixels, so that max_pixels bounds the memory.
 #pragma once
 
 #include <cstddef>
@@ -42,7 +43,7 @@ struct KeptImage {
   // Bits of the places of `rect` that are masked, 64 in each word, the first in the lowest bit;
   // empty: none is.
   std::vector<uint64_t> masked;
-  LfDepths depths;  // LfPixels::depths; they are not counted as pixels
+  LfDepths depths;  // LfPixels::depths
 
   size_t value_count() const {
     return (bayer == BayerPattern::kNone ? 3 : 1) + (has_opacity ? 1 : 0) + (has_trust ? 1 : 0);
@@ -57,12 +58,22 @@ struct KeptImage {
 
 class KeptPixels {
  public:
+  // The memory of LF images besides their pixels counts only beyond this number of bytes, ...
+  static constexpr size_t kFreeBytes = size_t{8} << 20;
+  // ... and then as so many bytes for each pixel: those of the smallest pixel, of a mosaic.
+  static constexpr size_t kLeastPixelBytes = sizeof(uint32_t) + sizeof(uint16_t);
+  // While pixels are dropped, LF images with this number of pixels, or with a sixteenth of all, are
+  // copied together, before their old memory is free.
+  static constexpr size_t kFewTogether = size_t{1} << 18;
+  // Largest number of pixels that are interpolated together; more only where none of them is kept.
+  static constexpr size_t kTilePixels = size_t{576} * 576;
+
   //   max_pixels  number of pixels that Add() leaves at most; at least 1
   explicit KeptPixels(size_t max_pixels, uint64_t limit = UINT64_MAX)
       : max_pixels_(max_pixels), limit_(limit) {}
 
   // Adds LF images, none of which may be there yet. Drops the pixels at and above the limit, and
-  // lowers the limit until there are no more than max_pixels.
+  // lowers the limit until there are no more than max_pixels (is_too_small() tells if that fails).
   void Add(std::vector<KeptImage> images, ThreadPool& pool);
 
   // The LF images by ascending ids. One that was added stays, even if no pixel of it is kept.
@@ -72,6 +83,10 @@ class KeptPixels {
   uint64_t limit() const { return limit_; }
   size_t size() const { return size_; }  // number of kept pixels
   size_t size_bytes() const;
+  // Memory of masks, depths, and the entries of LF images, however few pixels are kept.
+  size_t other_bytes() const { return other_bytes_; }
+  // True if not even dropping all pixels makes room, because of other_bytes(). No pixel is kept.
+  bool is_too_small() const { return size_ + OthersAsPixels() > max_pixels_; }
 
   // Hash of a pixel of an LF image; `number` is y * width_px + x in the whole LF image.
   static uint64_t HashOf(LfImageId id, uint64_t number);
@@ -87,10 +102,16 @@ class KeptPixels {
 
  private:
   size_t Drop(uint64_t limit, KeptImage* image) const;
+  void DropFromAll(ThreadPool& pool);
+  size_t OthersAsPixels() const {
+    if (other_bytes_ <= kFreeBytes) return 0;
+    return (other_bytes_ - kFreeBytes + kLeastPixelBytes - 1) / kLeastPixelBytes;
+  }
 
   size_t max_pixels_;
   uint64_t limit_;
   size_t size_ = 0;
+  size_t other_bytes_ = 0;
   std::map<LfImageId, KeptImage> images_;
 };
 

@@ -215,6 +215,38 @@ TEST(KeptPixels, LightIsInterpolatedByItsSquareRootAndTrustAsItIs) {
   EXPECT_NEAR(loaded.trust.at(1, 0), 100, 1);
 }
 
+// Masks and depths stay when pixels are dropped. Beyond kFreeBytes, they leave room for fewer.
+TEST(KeptPixels, MasksAndDepthsCountAsPixels) {
+  constexpr size_t kMost = 3'000'000;
+  constexpr int kSide = 1500;
+  std::vector<KeptImage> images;
+  for (uint32_t id = 0; id < 3; ++id) {
+    KeptImage image;
+    image.id = LfImageId{id};
+    image.width_px = image.height_px = kSide;
+    image.bayer = BayerPattern::kRggb;
+    image.rect = {0, 0, kSide, kSide};
+    for (uint32_t place = 0; place < kSide * kSide; place += 2) image.places.push_back(place);
+    image.values.resize(image.places.size());
+    image.masked.resize(image.masked_words());
+    image.depths.numbers = Image<uint16_t>(kSide, kSide);
+    images.push_back(std::move(image));
+  }
+  ThreadPool pool(2);
+  KeptPixels kept(kMost), backwards(kMost), few(1000);
+  kept.Add(images, pool);
+  for (auto image = images.rbegin(); image != images.rend(); ++image) backwards.Add({*image}, pool);
+  EXPECT_GT(kept.other_bytes(), KeptPixels::kFreeBytes);
+  EXPECT_LE(kept.size_bytes(), kMost * KeptPixels::kLeastPixelBytes + KeptPixels::kFreeBytes);
+  EXPECT_GT(kept.size(), 1'500'000u);
+  EXPECT_FALSE(kept.is_too_small());
+  EXPECT_EQ(kept.limit(), backwards.limit());
+  EXPECT_EQ(kept.size(), backwards.size());
+  few.Add(images, pool);
+  EXPECT_TRUE(few.is_too_small());
+  EXPECT_EQ(few.size(), 0u);
+}
+
 TEST(KeptPixels, ThoseThatAreDroppedDependOnNoOrder) {
   std::vector<KeptImage> images;
   for (uint32_t id = 0; id < 12; ++id)

@@ -282,11 +282,11 @@ class NoiseRuleTest(ProgramTestCase):
             self.fails(2, ["--shard", option],
                        *self.arguments("no", "--shard", "1/2", option, "noise<=0.1"))
         few = self.call(*self.arguments("no", "--mode", "rebin", "--stop-when", "noise<=0.1",
-                                        "--memory", "72M", "--max-rays", "1000"))
-        least = int(re.search(r"at least (\d+) MiB", few.stderr).group(1))
-        self.fails(4, ["--mode rebin", "--memory", "--frames"], *self.arguments(
-            "no", "--mode", "rebin", "--stop-when", "noise<=0.1", "--memory", f"{least + 65}M",
-            "--max-rays", "30000"))
+                                        "--memory", "1M", "--max-rays", "1000"))
+        least = int(re.search(r"give --memory (\d+)M", few.stderr).group(1))
+        too_small = ("--mode", "rebin", "--stop-when", "noise<=0.1", "--memory", f"{least - 1}M", "--max-rays", "1000")
+        self.fails(4, ["--mode rebin", f"give --memory {least}M", "--frames"], *self.arguments("no", *too_small))
+        self.render("one", *too_small, "--frames", "1")
         self.render("inputs", "--stop-when", "noise<=0.045", "--frames", "1")
         self.fails(2, ["stop_when noise<=0.045, this call has noise<=0.05"], *self.arguments(
             "inputs", "--stop-when", "noise<=0.05", "--frames", "1-2", "--resume"))

@@ -213,7 +213,7 @@ class RebinningTest(ProgramTestCase):
         self.render("out", "--mode", "rebin", "--max-rays", "5000", "-v")
         self.fails(4, ["--max-rays"], *self.command("no", "--mode", "rebin", "--max-rays",
                                                     "9000000000"))
-        self.fails(4, ["--memory"], *self.command("no", "--mode", "hybrid", "--memory", "100M"))
+        self.fails(4, ["--memory"], *self.command("no", "--mode", "hybrid", "--memory", "20M"))
 
     def test_what_rebinning_cannot_do_is_refused(self):
         self.path()

@@ -12,15 +12,6 @@
 
 namespace lf {
 
-size_t BytesOfKeptPixels(const RadianceEncoding& encoding, const RayReading& reading,
-                         uint64_t pixel_count, size_t max_pixels) {
-  const bool is_mosaic =
-      encoding.bayer != BayerPattern::kNone && reading.estimator == Estimator::kNearest;
-  const size_t value_count = (is_mosaic ? 1 : 3) + (encoding.HasOpacity() ? 1 : 0);
-  return std::min<uint64_t>(pixel_count, max_pixels) *
-         (sizeof(uint32_t) + value_count * sizeof(uint16_t));
-}
-
 Result<RebinCost> ForecastRebinning(const ImageIndex& index, const LfImageStore& store,
                                     const CameraPath& path,
                                     std::span<const FrameSurroundings> surroundings,

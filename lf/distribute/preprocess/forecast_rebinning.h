@@ -21,12 +21,6 @@
 
 namespace lf {
 
-// Returns the memory of kept pixels (rebinning/kept_pixels.h): the place of each and its values.
-//   pixel_count  number of LF pixels that frames ask for
-//   max_pixels   RenderMemory::max_cells
-size_t BytesOfKeptPixels(const RadianceEncoding& encoding, const RayReading& reading,
-                         uint64_t pixel_count, size_t max_pixels);
-
 // Returns the cost of the cells of one pass. Measures it with a few LF images. The options
 // of rebinning are the defaults, because packages have none. Errors are those of
 // MeasureRebinning().

@@ -17,6 +17,7 @@
 #include "lf/distribute/preprocess/split_film.h"
 #include "lf/light_field/model/reduction.h"
 #include "lf/render/collect/frame_lens.h"
+#include "lf/render/hybrid/frame_pixels.h"
 #include "lf/render/hybrid/rebin_cost.h"
 #include "lf/render/hybrid/render_memory.h"
 #include "lf/render/needs/film_order.h"
@@ -284,11 +285,19 @@ Result<void> Preprocessor::Measure() {
 Result<RenderMemory> Preprocessor::MemoryOf(const LightField& light_field,
                                             size_t frame_count) const {
   const Intrinsics& plate = path_.Camera(frames_.front()).pinhole.intrinsics;
-  return PlanRenderMemory(options_.memory_bytes, film_.mode, film_.rebin.interpolation, 0,
-                          light_field, film_.reading, plate.width_px, plate.height_px, frame_count,
-                          pool_.thread_count(), 0, needs_.guard,
-                          static_cast<size_t>(path_.shutter.samples), nullptr,
-                          ReferenceNeedOf(*store_, light_field, IsInGroups()));
+  const RenderMemoryNeed need = {.mode = film_.mode,
+                                 .interpolation = film_.rebin.interpolation,
+                                 .light_field = light_field,
+                                 .reading = film_.reading,
+                                 .plate_width = plate.width_px,
+                                 .plate_height = plate.height_px,
+                                 .frame_count = frame_count,
+                                 .thread_count = pool_.thread_count(),
+                                 .is_guarded = needs_.guard,
+                                 .instants = static_cast<size_t>(path_.shutter.samples),
+                                 .surface = LargestSurface(path_, frames_),
+                                 .references = ReferenceNeedOf(*store_, light_field, IsInGroups())};
+  return PlanRenderMemory(options_.memory_bytes, need);
 }
 
 Result<std::vector<Section>> Preprocessor::Split() const {
@@ -458,14 +467,17 @@ Result<void> Preprocessor::Forecast(const Package& package, PackageForecast* for
     const auto passes = static_cast<double>(frame_count) / static_cast<double>(per_pass);
     cpu = {passes * cost.begin_s, 0, 0, passes * cost.rebin_s, passes * cost.complete_s, 0};
   }
+  const uint64_t asked_count =
+      Collects(film_.mode) ? std::min(rebinned_count, read.pixel_count) : read.pixel_count;
   if (KeepsPixels(film_))
-    cost.map_bytes = BytesOfKeptPixels(
-        package.light_field.encoding, film_.reading,
-        Collects(film_.mode) ? std::min(rebinned_count, read.pixel_count) : read.pixel_count,
-        memory.max_cells);
+    cost.map_bytes = std::min<uint64_t>(asked_count, memory.max_cells) *
+                     FramePixels::BytesPerPixel(package.light_field.encoding,
+                                                film_.reading.estimator, needs_.guard);
+  // A render with this memory must not be refused.
   forecast->memory_bytes =
-      ExpectedBytes(memory, package.light_field, read, !needs_.KeepsOnlyCells(),
-                    film_.reading.Prefilters(), Rebins(film_.mode) ? &cost : nullptr);
+      std::max(memory.least_bytes,
+               ExpectedBytes(memory, package.light_field, read, !needs_.KeepsOnlyCells(),
+                             film_.reading.Prefilters(), Rebins(film_.mode) ? &cost : nullptr));
   if (!report_.rate) return {};
   cpu.begin_s += begin_cpu_s_;
   cpu.load_s = report_.rate->load_s * static_cast<double>(read.count);
@@ -474,6 +486,15 @@ Result<void> Preprocessor::Forecast(const Package& package, PackageForecast* for
   cpu.collect_s =
       report_.rate->collect_s * static_cast<double>(forecast->ray_count - not_collected);
   cpu.finish_s = report_.rate->finish_s * static_cast<double>(frame_count);
+  if (KeepsPixels(film_)) {
+    // All pixels are kept if they fill at most nine tenths of the room, as in FramePixels.
+    const KeptRate& kept =
+        10 * asked_count <= 9 * memory.max_cells ? report_.rate->all : report_.rate->edges;
+    cpu.begin_s += report_.rate->gaps_s * static_cast<double>(frame_count);
+    cpu.rebin_s = kept.keep_s * static_cast<double>(asked_count);
+    cpu.complete_s = kept.make_s * static_cast<double>(Collects(film_.mode) ? rebinned_count
+                                                                            : forecast->ray_count);
+  }
   forecast->cpu = cpu;
   return {};
 }

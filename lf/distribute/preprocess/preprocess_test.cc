@@ -9,7 +9,6 @@
 #include <optional>
 #include <set>
 
-#include "lf/distribute/preprocess/forecast_rebinning.h"
 #include "lf/render/collect/frame_lens.h"
 #include "lf/render/collect/test_noise_field.h"
 #include "lf/render/needs/frame_needs.h"
@@ -372,20 +371,6 @@ TEST_F(PreprocessTest, PackagesHaveWhatKeptPixelsNeed) {
     }
   }
   EXPECT_GT(grown_count, 0u);
-}
-
-TEST(ForecastRebinning, KeptPixelsTakeTheirPlaceAndTheirValues) {
-  RadianceEncoding encoding;
-  EXPECT_EQ(BytesOfKeptPixels(encoding, Estimator::kBilinear, 1000, 5000), 10'000u);
-  EXPECT_EQ(BytesOfKeptPixels(encoding, Estimator::kBilinear, 9000, 5000), 50'000u);
-  encoding.bayer = BayerPattern::kRggb;
-  EXPECT_EQ(BytesOfKeptPixels(encoding, Estimator::kBilinear, 1000, 5000), 10'000u);
-  EXPECT_EQ(BytesOfKeptPixels(encoding, Estimator::kNearest, 1000, 5000), 6'000u);
-  encoding = {};
-  encoding.alpha = AlphaMeaning::kStraight;
-  encoding.keeps_opacity = true;
-  ASSERT_TRUE(encoding.HasOpacity());
-  EXPECT_EQ(BytesOfKeptPixels(encoding, Estimator::kBilinear, 1000, 5000), 12'000u);
 }
 
 TEST_F(PreprocessTest, WhatCellsCannotHaveIsRefused) {

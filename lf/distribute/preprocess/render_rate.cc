@@ -11,8 +11,11 @@
 #include <vector>
 
 #include "lf/film/develop/frame_file.h"
+#include "lf/rebinning/keep_pixels.h"
+#include "lf/rebinning/probability_map.h"
 #include "lf/render/collect/collect.h"
 #include "lf/render/collect/frame_lens.h"
+#include "lf/render/hybrid/gap_lens.h"
 #include "lf/selection/image_order.h"
 #include "lf/storage/load/open_store.h"
 
@@ -47,6 +50,64 @@ FrameNeeds InGroups(const LightField& light_field, FrameNeeds needs) {
   return needs;
 }
 
+class KeptStore : public LfImageStore {
+ public:
+  explicit KeptStore(const KeptPixels& kept) : kept_(kept) {}
+  Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override {
+    kept_.Load(id, rect, pixels);
+    return {};
+  }
+
+ private:
+  const KeptPixels& kept_;
+};
+
+// Loads LF images as a render does that only keeps their pixels. Leaves out broken ones.
+std::vector<LfPixels> LoadSample(const LightField& light_field, const LfImageStore& store,
+                                 std::vector<SelectedImage>* sample) {
+  std::vector<LfPixels> loaded;
+  std::vector<SelectedImage> whole;
+  for (const SelectedImage& image : *sample) {
+    Result<LfPixels> pixels = LoadWithoutThrowing(
+        store, image.id, image.rect, light_field.image_names[image.id.value], LfPixels());
+    if (!pixels) continue;
+    loaded.push_back(*std::move(pixels));
+    whole.push_back(image);
+  }
+  *sample = std::move(whole);
+  return loaded;
+}
+
+// Keeps the pixels of the LF images, and collects `frame` from them.
+Result<KeptRate> MeasureKept(const LightField& light_field, const std::vector<LfPixels>& loaded,
+                             std::span<const SelectedImage> sample, CollectedFrame frame,
+                             bool keeps_all, const NeedsOptions& needs,
+                             const CollectOptions& options, ThreadPool& pool) {
+  const std::vector<uint16_t> stored_values = StoredValueTable(light_field.encoding);
+  uint64_t count = 0;
+  std::vector<KeptImage> images;
+  KeptRate rate;
+  const ThreadCpuTimer timer;
+  for (size_t i = 0; i < sample.size(); ++i) {
+    const Intrinsics& k = light_field.Camera(sample[i].id).intrinsics;
+    const PixelRect rect = Intersection(sample[i].rect, {0, 0, k.width_px, k.height_px});
+    count += static_cast<uint64_t>(rect.pixel_count());
+    images.push_back(
+        KeepPixels(sample[i].id, k, loaded[i],
+                   light_field.encoding.HasOpacity() ? loaded[i].opacity : Image<uint16_t>(),
+                   std::span(&rect, 1), keeps_all, stored_values, needs.rebin.rebin));
+  }
+  rate.keep_s = static_cast<double>(timer.Nanoseconds()) * 1e-9;
+  KeptPixels kept(std::max<size_t>(1, count));
+  kept.Add(std::move(images), pool);
+  LF_ASSIGN_OR_RETURN(
+      const CollectStatistics statistics,
+      Collect(light_field, KeptStore(kept), {std::move(frame)}, sample, options, pool, nullptr));
+  rate.make_s = statistics.times.load_cpu_s;
+  const double per_pixel = 1 / static_cast<double>(std::max<uint64_t>(1, count));
+  return KeptRate{rate.keep_s * per_pixel, rate.make_s * per_pixel};
+}
+
 }  // namespace
 
 Result<RenderRate> MeasureRate(const ImageIndex& index, const RenderCamera& frame,
@@ -64,7 +125,7 @@ Result<RenderRate> MeasureRate(const ImageIndex& index, const RenderCamera& fram
   if (reference_bytes > 0) opened->LimitReferences(kept.bytes);
   SensorPlate plate(frame.pinhole.intrinsics.width_px, frame.pinhole.intrinsics.height_px,
                     light_field.encoding.HasOpacity() ? PlateKind::kOpacity : PlateKind::kColours);
-  const std::vector<SelectedImage> sample = SampleOf(needs, store);
+  std::vector<SelectedImage> sample = SampleOf(needs, store);
   if (sample.empty())
     return InputError(
         needs.images.empty()
@@ -107,6 +168,27 @@ Result<RenderRate> MeasureRate(const ImageIndex& index, const RenderCamera& fram
   }
   rate.collect_s = statistics.times.collect_cpu_s /
                    static_cast<double>(std::max<uint64_t>(1, statistics.frames[0].tested_count));
+
+  if (needs_options.KeepsPixels()) {
+    const ThreadCpuTimer load_timer;
+    const std::vector<LfPixels> pixels = LoadSample(light_field, store, &sample);
+    // An LF image that no frame is collected from is not filtered.
+    if (!Collects(needs_options.mode))
+      rate.load_s =
+          std::min(rate.load_s, static_cast<double>(load_timer.Nanoseconds()) * 1e-9 /
+                                    static_cast<double>(std::max<size_t>(1, pixels.size())));
+    SensorPlate again(plate.width(), plate.height(), plate.kind());
+    collected.plate = &again;
+    for (const bool keeps_all : {true, false}) {
+      LF_ASSIGN_OR_RETURN(keeps_all ? rate.all : rate.edges,
+                          MeasureKept(light_field, pixels, sample, collected, keeps_all,
+                                      needs_options, options, pool));
+    }
+    const std::clock_t gap_start = std::clock();
+    if (Collects(needs_options.mode)) GapLens(index, frame, lens, {}, needs_options.select, pool);
+    rate.gaps_s = static_cast<double>(instant_count) *
+                  static_cast<double>(std::clock() - gap_start) / CLOCKS_PER_SEC;
+  }
 
   ThreadPool alone(1);
   const ThreadCpuTimer timer;

@@ -13,12 +13,22 @@
 
 namespace lf {
 
+// CPU times of kept pixels (render/hybrid/frame_pixels.h).
+struct KeptRate {
+  double keep_s = 0;  // CPU time to choose and keep a pixel that frames ask for
+  // CPU time to make such a pixel, and to filter it, for one frame
+  double make_s = 0;
+};
+
 // CPU times of the parts of a render. The times of rebinned rays are measured for each package
 // (render/hybrid/rebin_cost.h).
 struct RenderRate {
   double load_s = 0;     // CPU time to load one LF image
   double collect_s = 0;  // CPU time to collect one tested ray
   double finish_s = 0;   // CPU time of lens weights, developing and writing of one frame
+  // With kept pixels: if all are kept, and if only those at edges are.
+  KeptRate all, edges;
+  double gaps_s = 0;  // with kept pixels and kHybrid: CPU time to find the gaps of one frame
 };
 
 // Decoded reference images that a render keeps.

@@ -183,6 +183,9 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
   const size_t frame_bytes = plan.plate_bytes + bytes_per_frame + (instants - 1) * weights_bytes;
   const ReferenceRoom room = RoomFor(references, light_field, thread_count);
   const size_t least = set_aside + room.least + frame_bytes + pair_bytes;
+  plan.pair_bytes = pair_bytes;
+  plan.develop_bytes = element_count * develop_bytes;
+  plan.least_bytes = least;
   if (memory_bytes < least)
     return OutputError(fmt::format(
         "{{memory {}}} is too small: the sums of a frame of {} x {} elements{} two LF images{} "

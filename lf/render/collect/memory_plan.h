@@ -30,7 +30,10 @@ struct MemoryPlan {
   // LF images again
   size_t frames_per_pass = 1;
   size_t batch_image_count = 1;  // two batches are in memory at the same time (collect.h)
-  size_t plan_bytes = 0;         // memory for the plans (PlanBytes()) of a batch's rays
+  // number of LF images of a batch that is made of kept pixels (hybrid/frame_pixels.h), beside the
+  // batches of LF images that are read; 0: there are no kept pixels
+  size_t kept_batch_image_count = 0;
+  size_t plan_bytes = 0;  // memory for the plans (PlanBytes()) of a batch's rays
   // number of frames that are developed at the same time after the last batch, in the memory that
   // its LF images had
   size_t frames_finished_at_once = 1;
@@ -38,6 +41,10 @@ struct MemoryPlan {
   // Memory for two batches, for filtered copies of the LF images of one, and for their plans.
   size_t batches_bytes = 0;
   size_t plate_bytes = 0;  // size of the plate of one frame
+  // Memory for one LF image in each of two batches, for its filtered copies, and for one plan.
+  size_t pair_bytes = 0;
+  size_t develop_bytes = 0;  // memory to develop one frame
+  size_t least_bytes = 0;    // the least memory_bytes that suffices
   // Memory for decoded reference images (LfImageStore::LimitReferences()).
   size_t reference_bytes = 0;
   // The least memory_bytes for which reference_bytes is as much as pays: all reference images, or

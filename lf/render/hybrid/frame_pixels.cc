@@ -91,6 +91,40 @@ double FramePixels::CountAsked(std::span<const SelectedImage> images) const {
   return std::accumulate(counts.begin(), counts.end(), 0.0) * static_cast<double>(step);
 }
 
+size_t FramePixels::BytesPerPixel(const RadianceEncoding& encoding, Estimator estimator,
+                                  bool is_guarded) {
+  const bool is_mosaic = encoding.bayer != BayerPattern::kNone && estimator == Estimator::kNearest;
+  const size_t value_count =
+      (is_mosaic ? 1 : 3) + (encoding.HasOpacity() ? 1 : 0) + (is_guarded ? 1 : 0);
+  return sizeof(uint32_t) + value_count * sizeof(uint16_t);
+}
+
+size_t FramePixels::FixedBytes(const LightField& light_field, size_t bytes_per_pixel,
+                               int thread_count, size_t element_count, bool collects,
+                               const MemoryPlan& plan) {
+  // While the pixels of an LF image are chosen: probabilities of its pixels, and of the grey
+  // picture that they are made of, once more if they are smoothed.
+  constexpr size_t kChooseBytes = 3 * sizeof(uint16_t);
+  // Memory to decode an LF image, which no thread uses while pixels are chosen.
+  constexpr size_t kDecodeBytes = 16;
+  // While a tile is filled: up to five values of each pixel, their weight and a copy, as floats, in
+  // pictures that are reduced by two again and again, and the counts of known pixels there.
+  constexpr size_t kFillBytes = 8 * sizeof(float) * 4 / 3;
+  size_t largest = 0;
+  for (const Intrinsics& k : light_field.intrinsics)
+    largest = std::max(largest, static_cast<size_t>(k.width_px) * static_cast<size_t>(k.height_px));
+  const size_t chosen = bytes_per_pixel + kChooseBytes;
+  size_t of_thread = std::min(largest, KeptPixels::kTilePixels) * kFillBytes;
+  of_thread = std::max(of_thread, largest * (chosen - std::min(chosen, kDecodeBytes)));
+  // A batch of one LF image that is made of kept pixels, while the next batch that is read is in
+  // memory (MemoryPlan::kept_batch_image_count has a part of the other batches besides).
+  size_t bytes = KeptPixels::kFreeBytes + KeptPixels::kFewTogether * bytes_per_pixel +
+                 static_cast<size_t>(thread_count) * of_thread + plan.pair_bytes;
+  // The plate of a frame's gaps, and what is made of it.
+  if (collects) bytes += plan.plate_bytes + CompletionBytes(element_count);
+  return bytes;
+}
+
 const LfImageStore& FramePixels::store() const { return *store_; }
 
 std::vector<PixelRect> FramePixels::RectsOf(LfImageId id, uint32_t rank) const {
@@ -122,6 +156,14 @@ PixelRect FramePixels::RectOf(LfImageId id, uint32_t rank) const {
 
 void FramePixels::Take(std::span<const BatchImage> images, uint32_t rank_end) {
   if (rank_end <= ranks_done_) return;
+  // Only so many LF images at a time wait to be added, because they are not counted before.
+  const auto at_once = static_cast<size_t>(std::max(1, pool_.thread_count()));
+  for (size_t begin = 0; begin < images.size(); begin += at_once)
+    AddImages(images.subspan(begin, std::min(at_once, images.size() - begin)));
+  ranks_done_ = rank_end;
+}
+
+void FramePixels::AddImages(std::span<const BatchImage> images) {
   const Image<uint16_t> none;
   std::vector<KeptImage> kept(images.size());
   std::atomic<uint64_t> looked_at = 0;
@@ -141,7 +183,6 @@ void FramePixels::Take(std::span<const BatchImage> images, uint32_t rank_end) {
   std::erase_if(kept, [](const KeptImage& image) { return image.rect.empty(); });
   kept_->Add(std::move(kept), pool_);
   looked_at_ += looked_at;
-  ranks_done_ = rank_end;
 }
 
 void FramePixels::Restore(KeptPixels kept, uint32_t ranks_done) {

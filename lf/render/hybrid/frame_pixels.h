@@ -19,9 +19,11 @@
 
 #include "lf/core/parallel.h"
 #include "lf/light_field/model/light_field.h"
+#include "lf/light_field/model/radiance.h"
 #include "lf/rebinning/kept_pixels.h"
 #include "lf/render/collect/frame_lens.h"
 #include "lf/render/collect/image_consumer.h"
+#include "lf/render/collect/memory_plan.h"
 #include "lf/render/hybrid/gap_lens.h"
 #include "lf/render/settings/rebin_settings.h"
 #include "lf/selection/select.h"
@@ -71,11 +73,23 @@ class FramePixels : public ImageConsumer {
   //   kept  has the pixels of all LF images at ranks before ranks_done
   void Restore(KeptPixels kept, uint32_t ranks_done);
 
-  // BytesOf() returns an upper bound of the memory for this number of kept pixels.
-  static constexpr size_t kBytesPerPixel = 16;
-  static size_t BytesOf(size_t max_pixels) {
-    return max_pixels * kBytesPerPixel + (size_t{64} << 20);
+  // The memory of kept pixels is at most BytesOf(max_pixels, BytesPerPixel()) + FixedBytes(), in
+  // addition to a MemoryPlan for the same render. KeptPixels counts masks and depths as pixels.
+  // Each pixel takes its place and its values, and a sixteenth more, because as many pixels are
+  // copied together when pixels are dropped (KeptPixels::kFewTogether).
+  static size_t BytesOf(size_t max_pixels, size_t bytes_per_pixel) {
+    return max_pixels * bytes_per_pixel / 16 * 17;
   }
+  static size_t BytesPerPixel(const RadianceEncoding& encoding, Estimator estimator,
+                              bool is_guarded);
+  //   element_count  number of elements of a plate
+  //   collects       true if the frames also collect rays (RenderMode::kHybrid)
+  //   plan           the plan of this render, for any memory
+  static size_t FixedBytes(const LightField& light_field, size_t bytes_per_pixel, int thread_count,
+                           size_t element_count, bool collects, const MemoryPlan& plan);
+  // Returns the memory of what completes a frame (film/develop/develop.h): three colours, their
+  // share, and an opacity, as floats.
+  static size_t CompletionBytes(size_t element_count) { return element_count * 5 * sizeof(float); }
 
   struct Facts {
     size_t pixel_count = 0;
@@ -96,6 +110,7 @@ class FramePixels : public ImageConsumer {
   class Store;
   std::vector<PixelRect> RectsOf(LfImageId id, uint32_t rank) const;
   double CountAsked(std::span<const SelectedImage> images) const;
+  void AddImages(std::span<const BatchImage> images);
 
   const LightField& light_field_;
   const std::vector<KeptFrame> frames_;

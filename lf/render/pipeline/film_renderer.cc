@@ -379,6 +379,7 @@ void FilmRenderer::EndEarlyFrames() {
 Result<bool> FilmRenderer::Step() {
   const Result<bool> step = collector_->Step();
   if (!step && step.error().kind != ErrorKind::kInterrupted) return step;
+  if (pixels_) LF_RETURN_IF_ERROR(CheckRoom());
   DecideStops();
   for (; done_.image_count < collector_->images_done(); ++done_.image_count)
     done_.tested_count += images_[done_.image_count].ray_count;

@@ -192,6 +192,7 @@ class FilmRenderer final : public FrameSource {
   Result<void> PreparePixels(const RunState* state);
   Result<void> FindGaps();
   std::vector<TakingFrame> TakingGaps(const Frame& frame) const;
+  Result<void> CheckRoom() const;
   void AddKeptImages();
   Result<void> CollectKept(Frame* frame, uint32_t rank_end);
   Result<void> CheckKeptAdd() const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "lf/core/byte_text.h"
 #include "lf/core/log.h"
 #include "lf/render/pipeline/film_renderer.h"
 
@@ -106,6 +107,21 @@ Result<void> FilmRenderer::PreparePixels(const RunState* state) {
   return {};
 }
 
+// Returns kOutput if masks and depths of the LF images so far leave no room for pixels.
+Result<void> FilmRenderer::CheckRoom() const {
+  const KeptPixels& kept = pixels_->kept();
+  if (!kept.is_too_small()) return {};
+  // The memory that all LF images will take, with a quarter more.
+  const double all = 1.25 * static_cast<double>(kept.other_bytes()) *
+                     static_cast<double>(pixels_->images().size()) /
+                     static_cast<double>(kept.images().size());
+  return OutputError(fmt::format(
+      "{{max_rays {}}} leaves no room for pixels beside the masks and depths of LF images, which "
+      "take {} so far: give {{max_rays {}}}, or more {{memory}}",
+      kept.max_pixels(), ByteText(kept.other_bytes()),
+      static_cast<uint64_t>(all) / KeptPixels::kLeastPixelBytes + kept.max_pixels()));
+}
+
 // Adds the LF images that frames ask for to images_, unless they are there or done.
 void FilmRenderer::AddKeptImages() {
   const auto is_before = [](const SelectedImage& a, const SelectedImage& b) {
@@ -139,7 +155,7 @@ Result<void> FilmRenderer::CollectFromKept(std::vector<CollectedFrame>* frame,
   CollectOptions collect = OptionsOfCollector();
   collect.consumer = nullptr;
   collect.strict = true;
-  collect.batch_image_count = std::max(1, collect.batch_image_count / 4);  // beside other batches
+  collect.batch_image_count = static_cast<int>(setup_.plan().kept_batch_image_count);
   // Only a request to stop interrupts this: one to save is for the steps of the render. After a
   // request to stop, the last pictures are still made if they do not take long.
   collect.interrupted = setup_.work().stop;

@@ -29,17 +29,6 @@ Package WithRoomBesideEdges(Package package, const RayReading& reading) {
   return package;
 }
 
-// Returns the focal surface with the most rows of pieces; null if there is none.
-const FocalSurface* LargestSurface(const CameraPath& path, std::span<const FrameId> frames) {
-  const FocalSurface* largest = nullptr;
-  for (const FrameId frame : frames)
-    for (const RenderCamera& camera : path.Instants(frame))
-      if (camera.surface &&
-          (largest == nullptr || camera.surface->row_count() > largest->row_count()))
-        largest = camera.surface.get();
-  return largest;
-}
-
 }  // namespace
 
 FilmSetup::FilmSetup(Package package, const FilmSettings& film, const WorkSettings& work,
@@ -99,14 +88,22 @@ Result<void> FilmSetup::FindFootprint() {
 
 Result<void> FilmSetup::PlanMemory() {
   const Intrinsics& plate = path().Camera(frames_.front()).pinhole.intrinsics;
-  LF_ASSIGN_OR_RETURN(
-      const RenderMemory memory,
-      PlanRenderMemory(work_.memory_bytes, film_.mode, film_.rebin.interpolation,
-                       film_.rebin.max_cells, light_field(), film_.reading, plate.width_px,
-                       plate.height_px, frames_.size(), pool_.thread_count(),
-                       film_.MeasuresNoise() ? NoiseMoments::kMostBytes : 0, is_guarded(),
-                       static_cast<size_t>(path().shutter.samples), LargestSurface(path(), frames_),
-                       References()));
+  const RenderMemoryNeed need = {
+      .mode = film_.mode,
+      .interpolation = film_.rebin.interpolation,
+      .max_cells = film_.rebin.max_cells,
+      .light_field = light_field(),
+      .reading = film_.reading,
+      .plate_width = plate.width_px,
+      .plate_height = plate.height_px,
+      .frame_count = frames_.size(),
+      .thread_count = pool_.thread_count(),
+      .measured_bytes = film_.MeasuresNoise() ? NoiseMoments::kMostBytes : 0,
+      .is_guarded = is_guarded(),
+      .instants = static_cast<size_t>(path().shutter.samples),
+      .surface = LargestSurface(path(), frames_),
+      .references = References()};
+  LF_ASSIGN_OR_RETURN(const RenderMemory memory, PlanRenderMemory(work_.memory_bytes, need));
   plan_ = memory.plan;
   max_cells_ = memory.max_cells;
   enough_bytes_ = memory.enough_bytes;

@@ -167,10 +167,10 @@ TEST_F(FilmSetupTest, TheNoteNamesMemoryThatSuffices) {
   for (const RenderMode mode : {RenderMode::kCollect, RenderMode::kHybrid, RenderMode::kRebin}) {
     film_.mode = mode;
     if (film_.Rebins()) film_.rebin.max_cells = RebinSettings::kLeastCells;
-    const uint64_t rays_mib =
-        KeepsCells(film_)    ? RebinnedRays::BytesOf(RebinSettings::kLeastCells) / kMiB + 1
-        : KeepsPixels(film_) ? FramePixels::BytesOf(RebinSettings::kLeastCells) / kMiB + 1
-                             : 0;
+    const uint64_t rays_mib = KeepsCells(film_)
+                                  ? RebinnedRays::BytesOf(RebinSettings::kLeastCells) / kMiB + 1
+                              : KeepsPixels(film_) ? 13
+                                                   : 0;
     const auto little = Open(ImageOrder::kSpread, kLittle + rays_mib);
     ASSERT_TRUE(little) << little.error().message;
     const std::string note = (*little)->ReferenceNote();

@@ -61,13 +61,8 @@ class FilmOfRays final : public FilmSource {
   Result<PassPlan> Plan(FilmSetup* setup, std::span<const FrameId> /*frames*/) override {
     LF_RETURN_IF_ERROR(setup->PlanSlabs());
     const MemoryPlan& plan = setup->plan();
-    size_t at_once = plan.frames_finished_at_once;
-    // A frame that is finished has a plate of the rays of kept pixels, in the memory that LF images
-    // had.
-    if (KeepsPixels(setup->film()))
-      at_once = std::min(at_once, std::max<size_t>(1, plan.batches_bytes / 4 / plan.plate_bytes));
     return PassPlan{
-        plan.frames_per_pass, at_once, 1,
+        plan.frames_per_pass, plan.frames_finished_at_once, 1,
         fmt::format("{} plates of {} MiB", plan.frames_per_pass, plan.plate_bytes >> 20)};
   }
   std::unique_ptr<FrameSource> Open(const FilmSetup& setup,

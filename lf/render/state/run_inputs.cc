@@ -204,6 +204,12 @@ std::string InputDifference::Text(const std::string& one, const std::string& oth
                      is_in_both ? wanted : text_of(wanted));
 }
 
+std::string InputDifference::Remedy() const {
+  if (key == "max_rays" && recorded != kNoInput)
+    return fmt::format("give {{max_rays {}}}, or the same {{memory}}", recorded);
+  return "give the same inputs and options";
+}
+
 std::optional<InputDifference> FirstDifference(const RunInputs& recorded, const RunInputs& wanted) {
   const auto value_in = [](const RunInputs& inputs, const std::string& key) -> std::string {
     for (const auto& [name, value] : inputs)

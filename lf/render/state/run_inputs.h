@@ -98,6 +98,9 @@ struct InputDifference {
   // with" and `other` is "this call has". If one side lacks the input, its part of the text is "no
   // KEY", such as "no order".
   std::string Text(const std::string& one, const std::string& other) const;
+  // Returns what to do to continue the recorded render: give the same inputs and options. Names the
+  // number of rebinned rays, because it may follow from {memory} and is then none of the options.
+  std::string Remedy() const;
 };
 // Returns nullopt if both have the same keys and values, in any order. A side that lacks the key
 // "interpolation" counts as "interpolation cells", because renders that were begun before there

@@ -165,6 +165,14 @@ TEST(RunInputs, DifferencesAreReadable) {
   EXPECT_EQ(FirstDifference({{"a", "1"}}, {})->Text("has", "this has"), "has a 1, this has no a");
 }
 
+// The number of rays that follows from --memory is none of the options of the call.
+TEST(RunInputs, TheRemedyNamesTheNumberOfRays) {
+  const RunInputs more = {{"max_rays", "5000"}}, fewer = {{"max_rays", "3000"}};
+  EXPECT_EQ(FirstDifference(more, fewer)->Remedy(), "give {max_rays 5000}, or the same {memory}");
+  EXPECT_EQ(FirstDifference({{"seed", "1"}}, {{"seed", "2"}})->Remedy(),
+            "give the same inputs and options");
+}
+
 // Renders that were begun before there were kept pixels have no input "interpolation".
 TEST(RunInputs, ARenderWithoutAnInterpolationHasCells) {
   const LightField field = testing::NoiseField();

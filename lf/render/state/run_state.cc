@@ -311,20 +311,19 @@ bool RunState::HasPlateBeside(FrameId frame) const {
 Result<void> RunState::Check(const std::string& place, FrameId frame, const RunInputs& recorded,
                              bool has_picture) const {
   constexpr const char* kAdvice =
-      "give the same inputs and options, or another {output}, or start again with {overwrite} "
-      "instead of "
-      "{resume}";
+      "or another {output}, or start again with {overwrite} instead of {resume}";
   if (!path_.frames().Has(frame))
     return UsageError(fmt::format(
         "{}: belongs to frame {}, but the camera path has the frames {} to {}, so that {{resume}} "
-        "cannot use the file; {}",
+        "cannot use the file; give the same inputs and options, {}",
         place, frame.value, path_.frames().first, path_.frames().last(), kAdvice));
   RunInputs wanted = options_.rays;
   if (has_picture) wanted = Joined(wanted, options_.picture);
   wanted = Joined(wanted, InputsOfFrame(path_, frame));
   if (const auto difference = FirstDifference(recorded, wanted))
-    return UsageError(fmt::format("{}: {}, so that {{resume}} cannot continue; {}", place,
-                                  difference->Text("was made with", "this call has"), kAdvice));
+    return UsageError(fmt::format("{}: {}, so that {{resume}} cannot continue; {}, {}", place,
+                                  difference->Text("was made with", "this call has"),
+                                  difference->Remedy(), kAdvice));
   return {};
 }
 

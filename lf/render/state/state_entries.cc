@@ -20,11 +20,10 @@ Result<void> CheckEntriesOfPass(const std::filesystem::path& path, const PlateEn
   for (const auto& entry : entries)
     if (!entry.first.starts_with(kProgressKeys)) recorded.push_back(entry);
   if (const auto difference = FirstDifference(recorded, wanted))
-    return UsageError(
-        fmt::format("{}: {}, so that {{resume}} cannot continue; give the same inputs and "
-                    "options, or another {{output}}, or start again with {{overwrite}} instead of "
-                    "{{resume}}",
-                    path.string(), difference->Text("was made with", "this call has")));
+    return UsageError(fmt::format(
+        "{}: {}, so that {{resume}} cannot continue; {}, or another {{output}}, or "
+        "start again with {{overwrite}} instead of {{resume}}",
+        path.string(), difference->Text("was made with", "this call has"), difference->Remedy()));
   return {};
 }
 
