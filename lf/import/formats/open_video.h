@@ -4,37 +4,12 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "lf/core/result.h"
+#include "lf/import/formats/find_video_folder.h"
 #include "lf/import/formats/open_light_field.h"
 
 namespace lf {
-
-// The frames of one LF camera, in a video or as image files.
-struct FilmingCamera {
-  std::string name;                 // of the video without its ending, or of the folder
-  std::filesystem::path video;      // empty: the frames are image files
-  std::vector<std::string> frames;  // the image files, relative to the folder of the light field
-};
-
-// The cameras that film in a folder, and their calibration.
-struct VideoFolder {
-  std::filesystem::path folder;
-  std::filesystem::path calibration;   // poses_bounds.npy or models.json
-  std::vector<FilmingCamera> cameras;  // sorted by name
-  // True if the calibration also fits image files that are there, so that the folder is also a
-  // light field without times.
-  bool holds_stills = false;
-};
-
-// Looks for cameras that film in a folder with a poses_bounds.npy or models.json: at least two
-// videos; or at least two folders CAMERA or CAMERA/images of image files, which are as many as the
-// calibration has cameras, or none of which holds an image for each camera. nullopt: there are
-// none.
-std::optional<VideoFolder> FindVideoFolder(const std::filesystem::path& folder);
 
 // Opens the slices of OpenOptions::time or of OpenOptions::path_times.
 //   asked_for  the light field as the user typed it
