@@ -2,6 +2,7 @@
 #include "lf/rebinning/fill_pixels.h"
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 #include <algorithm>
 #include <cmath>
@@ -71,6 +72,24 @@ TEST(FillPixels, AFlatPictureIsExactAndASlopeIsNear) {
     for (int x = 0; x < 120; ++x) squares += std::pow(picture.planes[0].at(x, y) - slope(x, y), 2);
   // Known pixels are about two pixels apart, over which the slope changes by 0.03.
   EXPECT_LT(std::sqrt(squares / (120 * 90)), 0.02);
+}
+
+TEST(FillPixels, HasTheSameBitsWithAllInstructions) {
+  std::vector<Image<float>> first;
+  for (const int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().DeInit();
+    const auto noise = [](int x, int y) {
+      return static_cast<float>(RandomUnit(6, static_cast<uint64_t>(y), static_cast<uint64_t>(x)));
+    };
+    Picture picture = Make(77, 31, 0.1, noise);
+    FillPixels(&picture.planes, picture.weight);
+    if (first.empty()) first = picture.planes;
+    for (size_t i = 0; i < first.size(); ++i)
+      EXPECT_EQ(picture.planes[i].pixels(), first[i].pixels()) << hwy::TargetName(target);
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().DeInit();
 }
 
 TEST(FillPixels, NothingKnownIsBlack) {
