@@ -16,6 +16,7 @@ from quality import results
 
 SCENES = ("still-life", "chart", "lights")
 COLUMNS = {
+    "collected, no weights": "--mode collect --estimator bilinear --filter prefiltered --lens-weights none",
     "collected": "",
     "rebinned, cells": "--mode rebin --interpolation cells",
     "hybrid": "--mode hybrid",

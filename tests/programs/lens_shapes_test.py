@@ -86,7 +86,7 @@ class LensShapesTest(StillLifeCase):
                 of_default = psnr_db(picture(self.frame(path)), truth)
                 self.assertGreater(of_default, 40)
                 self.assertLess(psnr_db(picture(self.frame(self.path("wrong", wrong))), truth), of_default - 3)
-                # The capture fills these lenses: a hybrid has nothing to complete, or completes it as well.
+                # The capture fills these lenses: a hybrid is no worse than its collection.
                 hybrid = psnr_db(picture(self.frame(path, "--mode", "hybrid")), truth)
                 self.assertGreater(hybrid, max(40, of_default - 0.1))
                 if "transmission" in right[1]:
