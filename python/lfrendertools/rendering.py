@@ -201,7 +201,7 @@ class Renderer:
         IndexError
             There is no such frame, or it was stopped.
         UsageError
-            The renderer is closed.
+            The renderer is closed, or has frames of `mode="rebin"` with `interpolation="cells"`.
         """
         with self._lock:
             core, number = self._core_of(i)

@@ -115,15 +115,17 @@ class Film {
 
   std::unique_ptr<Plate> PlateOf(size_t f) {
     Check(f);
-    if (!setup_->film().Collects())
-      throw Failure(UsageError("mode=\"rebin\": its frames have no plates"));
+    const bool keeps_pixels = renderer().pixels() != nullptr;
+    if (!setup_->film().Collects() && !keeps_pixels)
+      throw Failure(UsageError(
+          "mode=\"rebin\" with interpolation=\"cells\": its frames have no plates; use "
+          "interpolation=\"pixels\" or mode=\"collect\""));
     auto plate = std::make_unique<Plate>();
-    if (renderer().pixels() != nullptr)
-      CallWithoutGil([&] { return Take(renderer().Complete(f, true)); }, &signals_);
+    if (keeps_pixels) CallWithoutGil([&] { return Take(renderer().Complete(f, true)); }, &signals_);
     if (const PlateGaps* const gaps = renderer().GapsOf(f)) plate->gaps = CopyOf(*gaps);
-    renderer().ForgetPicture(f);
-    plate->sums = CopyOf(renderer().plate(f));
+    plate->sums = CopyOf(renderer().PictureOf(f));
     plate->notes = renderer().NotesOf(f);
+    renderer().ForgetPicture(f);
     plate->notes.version = Version();
     plate->inputs = inputs_;
     for (auto& entry : InputsOfFrame(setup_->path(), plate->notes.frame))

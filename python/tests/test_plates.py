@@ -55,6 +55,14 @@ def test_rays_do_not_count_twice(field, path, shards):
             one + other
 
 
+def test_kept_pixels_give_the_plate_of_all_pixels(field, path):
+    kept, collected = plate_of(field, path, mode="rebin"), plate_of(field, path)
+    assert np.array_equal(kept.sums, collected.sums) and np.array_equal(kept.counts, collected.counts)
+    assert np.array_equal(kept.develop().rgb, lf.render(field, path, mode="rebin").rgb)
+    with pytest.raises(lf.UsageError, match='"cells".*no plates.*interpolation="pixels"'):
+        plate_of(field, path, mode="rebin", interpolation="cells")
+
+
 def test_plates_are_kept_in_files_and_pickles(field, path, shards, tmp_path):
     for number, plate in enumerate((plate_of(field, path), *shards)):
         plate.save(tmp_path / f"{number}.plate")
