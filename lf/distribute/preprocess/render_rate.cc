@@ -12,7 +12,6 @@
 
 #include "lf/film/develop/frame_file.h"
 #include "lf/rebinning/keep_pixels.h"
-#include "lf/rebinning/probability_map.h"
 #include "lf/render/collect/collect.h"
 #include "lf/render/collect/frame_lens.h"
 #include "lf/render/hybrid/gap_lens.h"
