@@ -69,7 +69,7 @@ class KeptMemoryTest(ProgramTestCase):
     def test_kept_pixels_fill_their_memory_and_no_more(self):
         self.path(frames=1, aperture=0.2)
         for options, least_part in ((["--kept", "all", "--max-rays", "12500000"], 0.65),
-                                    (["--kept", "all", "--max-rays", "6M"], 0.5),
+                                    (["--kept", "edges", "--xi", "1", "--max-rays", "6M"], 0.5),
                                     (["--kept", "edges", "--xi", "0.7", "--max-rays", "12M"], 0.5)):
             with self.subTest(options=options):
                 self.assertGreater(self.render_with_least("--mode", "rebin", *options), least_part)
@@ -85,7 +85,7 @@ class KeptMemoryTest(ProgramTestCase):
             frame["mask_path"] = name
         self.field.write_text(json.dumps(calibration))
         self.path(frames=1, aperture=0.2)
-        self.render_with_least("--mode", "rebin", "--kept", "all", "--max-rays", "5M")
+        self.render_with_least("--mode", "rebin", "--kept", "edges", "--xi", "1", "--max-rays", "5M")
 
     def test_the_forecast_suffices(self):
         for size in ((80, 60), (1280, 960)):
