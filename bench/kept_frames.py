@@ -53,7 +53,8 @@ def measure(build, field, folder, frames, runs):
                 path = folder / f"{count}.yaml"
                 path.write_text(path_text(field / "transforms.json", int(count)))
                 used = results.timed([build / "bin/lfrenderer", field, path, "-o", folder / "out", "--threads", 1, "-q",
-                                      "--overwrite", "--no-contact-sheet", "--format", "exr", *WAYS[row["way"]].split()])
+                                      "--overwrite", "--no-contact-sheet", "--format", "exr",
+                                      *WAYS[row["way"]].split()])
                 seconds.append(round(used["cpu_s"], 3))
             report = json.loads((folder / "out" / "report.json").read_text())
             row["lf_images"] = report["frames"][0]["lf_images"]

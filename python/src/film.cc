@@ -117,9 +117,9 @@ class Film {
     Check(f);
     const bool keeps_pixels = renderer().pixels() != nullptr;
     if (!setup_->film().Collects() && !keeps_pixels)
-      throw Failure(UsageError(
-          "mode=\"rebin\" with interpolation=\"cells\": its frames have no plates; use "
-          "interpolation=\"pixels\" or mode=\"collect\""));
+      throw Failure(
+          UsageError("mode=\"rebin\" with interpolation=\"cells\": its frames have no plates; use "
+                     "interpolation=\"pixels\" or mode=\"collect\""));
     auto plate = std::make_unique<Plate>();
     if (keeps_pixels) CallWithoutGil([&] { return Take(renderer().Complete(f, true)); }, &signals_);
     if (const PlateGaps* const gaps = renderer().GapsOf(f)) plate->gaps = CopyOf(*gaps);
