@@ -92,7 +92,7 @@ def table(record):
             f"| {name} | {mode} | {row['report']['lf_images_selected']} | {cpu:.2f} | "
             f"{ratio} | {looked_at / 1e6:.1f} M | "
             + (f"{1e9 * rebinning['cpu_s'] / looked_at:.1f}" if looked_at else "-")
-            + f" | {rebinning['cells'] / 1e6:.2f} M | {100 * row['interpolated']:.0f} % |")
+            + f" | {rebinning.get('pixels', rebinning['cells']) / 1e6:.2f} M | {100 * row['interpolated']:.0f} % |")
     lines += ["", "Options of each mode:", ""]
     lines += [f"- {mode}: `{' '.join(options)}`" for mode, (_, options) in MODES.items()]
     return lines

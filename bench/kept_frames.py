@@ -59,7 +59,9 @@ def measure(build, field, folder, frames, runs):
             report = json.loads((folder / "out" / "report.json").read_text())
             row["lf_images"] = report["frames"][0]["lf_images"]
             if report.get("rebinning"):
-                row["kept"], row["of"] = report["rebinning"]["cells"], report["rebinning"]["lf_pixels_looked_at"]
+                rebinning = report["rebinning"]
+                row["kept"] = rebinning.get("pixels", rebinning["cells"])
+                row["of"] = rebinning["lf_pixels_looked_at"]
     return rows
 
 

@@ -51,7 +51,7 @@ def render(renderer, calibration, path, options):
     with tempfile.TemporaryDirectory() as temporary:
         frame, _ = quality.render(renderer, calibration, path, pathlib.Path(temporary) / "frames", options)
         report = json.loads((frame.parent / "report.json").read_text())["rebinning"]
-        return lens_weights.linear_exr(frame), report["cells"] / report["lf_pixels_looked_at"]
+        return lens_weights.linear_exr(frame), report.get("pixels", report["cells"]) / report["lf_pixels_looked_at"]
 
 
 def pair(truth, picture):
