@@ -343,8 +343,8 @@ class PackagesTest(ProgramTestCase):
             self.assertEqual(stages["rebin"] + stages["complete"] > 0, cells, stages)
             self.assertEqual(stages["collect"] > 0, (mode, cells) != ("rebin", True), stages)
             memory[mode, cells] = package["memory_bytes"]
-        # Rays take the memory that they fill, not the part of --memory that is theirs. Cells are refused if this part, a
-        # half or a quarter, is less than 192 MiB.
+        # Rays take the memory that they fill, not the part of --memory that is theirs. Cells are refused if this part,
+        # a half or a quarter, is less than 192 MiB.
         for (mode, cells), planned in memory.items():
             part = {"rebin": 2, "hybrid": 4}.get(mode, 1)
             self.assertLess(planned, part * 210e6 if cells else 100e6, (mode, cells))

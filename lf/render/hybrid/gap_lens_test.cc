@@ -55,6 +55,14 @@ TEST(GapLens, APinholeBetweenCamerasIsCompletedByItsNeighbours) {
                 hats.lens.WeightsOf(id).At(40, 30) / sum, 0.01);
 }
 
+// Its rays are hats, which stand for all of the lens, although it is beyond the outermost row.
+TEST(GapLens, ASmallLensBeyondTheCaptureHasNone) {
+  const RenderCamera beyond = Frame(0.002, 0, 0, 0.0635);
+  EXPECT_FALSE(Gap(Grid(), beyond, LensWeights::kHat).gap.exists());
+  EXPECT_FALSE(Gap(Grid(), beyond, LensWeights::kAuto).gap.exists());
+  EXPECT_TRUE(Gap(Grid(), beyond, LensWeights::kNone).gap.exists());
+}
+
 // The lens reaches 0.01 beyond the outermost rows, and more beyond their rays.
 TEST(GapLens, ALensHigherThanTheCaptureIsCompletedByItsEdges) {
   for (const LensWeights weights : {LensWeights::kNone, LensWeights::kAuto}) {
