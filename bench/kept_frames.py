@@ -18,7 +18,6 @@ import json
 import pathlib
 import statistics
 import sys
-import tempfile
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parent / "quality"))
 import lens_weights
@@ -82,16 +81,10 @@ def main():
     parser.add_argument("--field", type=pathlib.Path)
     results.add_options(parser)
     arguments = parser.parse_args()
-    if arguments.again:
-        record = json.loads(arguments.again.read_text())
-    elif arguments.build:
-        record = results.context() | {"frames": arguments.frames, "runs": arguments.runs}
-        with tempfile.TemporaryDirectory() as temporary:
-            folder = pathlib.Path(temporary)
-            record["rows"] = measure(arguments.build.resolve(), arguments.field or folder / "field", folder,
-                                     arguments.frames, arguments.runs)
-    else:
-        parser.error("BUILD_DIR or --again is needed")
+    record = results.record_of(parser, arguments, arguments.build, lambda folder: {
+        "frames": arguments.frames, "runs": arguments.runs,
+        "rows": measure(arguments.build.resolve(), arguments.field or folder / "field", folder, arguments.frames,
+                        arguments.runs)})
     text = "\n".join([f"{results.sentence(record)} One thread, medians of {record['runs']} runs.", "",
                       *table(record)]) + "\n"
     results.publish(arguments, "kept_frames.py", record, text)

@@ -269,6 +269,7 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   facts.thread_count = pool.thread_count();
   facts.read_s = read_s;
   facts.rebins = lf::KeepsCells(options.film);
+  facts.completes = options.film.mode == lf::RenderMode::kHybrid;
   facts.depths_from = depths_from;
   facts.depths_argument = "--depths";
   const lf::Result<void> end = lf::EndWithMissing(

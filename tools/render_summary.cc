@@ -173,8 +173,7 @@ std::string LightBeyondCapture(const FrameReport& frame) {
   if (interpolated == 0) return kCutOff;
   std::string words = fmt::format(
       "The light of the nearest LF cameras stands for this part, in {:.0f} % of the picture. Blur "
-      "is "
-      "as strong as that of the whole lens, but blur disks keep the shape of the capture. ",
+      "is as strong as that of the whole lens, but blur disks keep the shape of the capture. ",
       100 * interpolated);
   if (uncovered - interpolated > kMuchUncovered)
     words += fmt::format(

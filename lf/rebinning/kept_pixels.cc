@@ -93,7 +93,7 @@ size_t OtherBytes(const KeptImage& image) {
   constexpr size_t kMapNodeBytes = 48;
   constexpr size_t kHeadBytes = 16;
   return sizeof(KeptImage) + kMapNodeBytes + 4 * kHeadBytes +
-         image.masked.capacity() * sizeof(uint64_t) + image.depths.numbers.size_bytes();
+         image.masked.size() * sizeof(uint64_t) + image.depths.numbers.size_bytes();
 }
 
 // Fills the pixels of `around` whose columns and rows have the same remainders modulo `step` as

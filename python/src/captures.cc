@@ -137,6 +137,7 @@ std::string Preprocess(const OpenedField& field, const std::string& name,
         facts.seed = options.film.seed;
         facts.thread_count = pool.thread_count();
         facts.rebins = KeepsCells(options.film);
+        facts.completes = options.film.mode == RenderMode::kHybrid;
         facts.depths_from = KnowDepths(light_field, path, pool, &options);
         const PreprocessReport report =
             Take(lf::Preprocess(light_field, path, options, pool, work.Progress()));

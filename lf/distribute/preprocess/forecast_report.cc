@@ -180,15 +180,17 @@ std::vector<std::string> DensityWarnings(const PreprocessReport& report, const C
   const FrameForecast& uncovered = Worst(
       report, [](const FrameForecast& frame) { return frame.density.coverage.uncovered_share; });
   if (uncovered.density.coverage.uncovered_share > kMuchUncovered)
-    warnings.push_back(
-        fmt::format("frame {}: {:.0f} % of its lens are beyond the LF cameras: this part gets no "
-                    "rays, and the bokeh (blur disks) are cut off there. What would help: {}a path "
-                    "nearer to the middle of the capture",
-                    uncovered.frame.value, 100 * uncovered.density.coverage.uncovered_share,
-                    advice.largest_aperture_w > 0
-                        ? fmt::format("an aperture of at most {}, or ",
-                                      AtMostText(advice.largest_aperture_w, path.unit_m))
-                        : ""));
+    warnings.push_back(fmt::format(
+        "frame {}: {:.0f} % of its lens are beyond the LF cameras: {}. What would "
+        "help: {}a path nearer to the middle of the capture",
+        uncovered.frame.value, 100 * uncovered.density.coverage.uncovered_share,
+        facts.completes ? "light of the nearest LF cameras is shown for this part, and blur disks "
+                          "keep the shape of the capture"
+                        : "this part gets no rays, and the bokeh (blur disks) are cut off there",
+        advice.largest_aperture_w > 0
+            ? fmt::format("an aperture of at most {}, or ",
+                          AtMostText(advice.largest_aperture_w, path.unit_m))
+            : ""));
   return warnings;
 }
 

@@ -16,6 +16,7 @@ struct ForecastFacts {
   std::string output;       // folder of the packages; empty: nothing is written (--plan)
   std::string next;         // line that advises the next command; empty: none
   bool rebins = false;      // KeepsCells() (render/settings/interpolation.h)
+  bool completes = false;   // the mode is kHybrid: lenses beyond the capture are completed
   ImageOrder order = ImageOrder::kSpread;
   uint64_t seed = 0;
   int thread_count = 1;

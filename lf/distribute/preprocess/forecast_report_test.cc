@@ -52,6 +52,14 @@ class ForecastReportTest : public ::testing::Test {
   ForecastFacts facts_;
 };
 
+TEST_F(ForecastReportTest, ALensBeyondTheCaptureIsCutOffUnlessAHybridCompletesIt) {
+  report_.frames[0].density.coverage = {0.3, 0.08};
+  ExpectPart(Warnings(), "30 % of its lens are beyond the LF cameras: this part gets no rays");
+  facts_.completes = true;
+  ExpectPart(Warnings(), "beyond the LF cameras: light of the nearest LF cameras is shown");
+  EXPECT_EQ(Warnings().find("cut off"), std::string::npos);
+}
+
 TEST_F(ForecastReportTest, TextHasFactsPackagesFramesAndWarnings) {
   facts_.next = "next: lfrenderer\n";
   const std::string text = ForecastText(report_, path_, facts_);

@@ -41,7 +41,8 @@ struct PreprocessOptions {
   // only be rendered with these two, because they lack the neighbours, which lens weights and
   // rebinned rays need. The mode decides what frames need, and therefore the forecast, and which
   // pixels lfcompressor --needed-pixels keeps; if whole LF images are kept, other packages can be
-  // rendered in any mode. With RenderMode::kRebin, LensWeights::kAuto means kNone.
+  // rendered in any mode. LensWeights::kAuto means kNone if no rays are weighted (HasLensWeights()
+  // in interpolation.h).
   FilmSettings film;
 
   // Number of packages: package_count if it is set; otherwise, if frames_per_package is set, as

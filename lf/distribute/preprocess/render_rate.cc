@@ -15,6 +15,7 @@
 #include "lf/render/collect/collect.h"
 #include "lf/render/collect/frame_lens.h"
 #include "lf/render/hybrid/gap_lens.h"
+#include "lf/render/hybrid/kept_store.h"
 #include "lf/selection/image_order.h"
 #include "lf/storage/load/open_store.h"
 
@@ -49,18 +50,6 @@ FrameNeeds InGroups(const LightField& light_field, FrameNeeds needs) {
   return needs;
 }
 
-class KeptStore : public LfImageStore {
- public:
-  explicit KeptStore(const KeptPixels& kept) : kept_(kept) {}
-  Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override {
-    kept_.Load(id, rect, pixels);
-    return {};
-  }
-
- private:
-  const KeptPixels& kept_;
-};
-
 // Loads LF images as a render does that only keeps their pixels. Leaves out broken ones.
 std::vector<LfPixels> LoadSample(const LightField& light_field, const LfImageStore& store,
                                  std::vector<SelectedImage>* sample) {
@@ -85,7 +74,6 @@ Result<KeptRate> MeasureKept(const LightField& light_field, const std::vector<Lf
   const std::vector<uint16_t> stored_values = StoredValueTable(light_field.encoding);
   uint64_t count = 0;
   std::vector<KeptImage> images;
-  KeptRate rate;
   const ThreadCpuTimer timer;
   for (size_t i = 0; i < sample.size(); ++i) {
     const Intrinsics& k = light_field.Camera(sample[i].id).intrinsics;
@@ -96,15 +84,14 @@ Result<KeptRate> MeasureKept(const LightField& light_field, const std::vector<Lf
                    light_field.encoding.HasOpacity() ? loaded[i].opacity : Image<uint16_t>(),
                    std::span(&rect, 1), keeps_all, stored_values, needs.rebin.rebin));
   }
-  rate.keep_s = static_cast<double>(timer.Nanoseconds()) * 1e-9;
+  const double keep_s = static_cast<double>(timer.Nanoseconds()) * 1e-9;
   KeptPixels kept(std::max<size_t>(1, count));
   kept.Add(std::move(images), pool);
   LF_ASSIGN_OR_RETURN(
       const CollectStatistics statistics,
       Collect(light_field, KeptStore(kept), {std::move(frame)}, sample, options, pool, nullptr));
-  rate.make_s = statistics.times.load_cpu_s;
-  const double per_pixel = 1 / static_cast<double>(std::max<uint64_t>(1, count));
-  return KeptRate{rate.keep_s * per_pixel, rate.make_s * per_pixel};
+  const double pixels = static_cast<double>(std::max<uint64_t>(1, count));
+  return KeptRate{keep_s / pixels, statistics.times.load_cpu_s / pixels};
 }
 
 }  // namespace

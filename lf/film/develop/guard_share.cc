@@ -3,14 +3,10 @@
 
 #include <algorithm>
 
+#include "lf/core/smooth_step.h"
+
 namespace lf {
 namespace {
-
-// Returns 0 up to `from`, 1 from `to` on, and between them s^2 (3 - 2 s).
-double SmoothStep(double value, double from, double to) {
-  const double s = std::clamp((value - from) / (to - from), 0.0, 1.0);
-  return s * s * (3 - 2 * s);
-}
 
 // Returns the mean of rays whose values are those of opacities.
 double MeanShareOf(const ElementSum& rays, const DevelopOptions& options) {

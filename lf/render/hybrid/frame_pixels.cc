@@ -40,20 +40,6 @@ std::vector<PixelRect> AskedRects(const KeptFrame& frame, LfImageId id, const Im
   return rects;
 }
 
-class FramePixels::Store : public LfImageStore {
- public:
-  explicit Store(const FramePixels& rays) : rays_(rays) {}
-
-  Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override {
-    rays_.kept().Load(id, rect, pixels);
-    return {};
-  }
-  bool LoadsDepths() const override { return true; }
-
- private:
-  const FramePixels& rays_;
-};
-
 FramePixels::FramePixels(const ImageIndex& index, std::vector<KeptFrame> frames,
                          std::vector<SelectedImage> images, const SelectOptions& select,
                          const RebinSettings& options, ThreadPool& pool)
@@ -65,7 +51,7 @@ FramePixels::FramePixels(const ImageIndex& index, std::vector<KeptFrame> frames,
       pool_(pool),
       stored_values_(StoredValueTable(light_field_.encoding)),
       kept_(std::make_unique<KeptPixels>(std::max<size_t>(1, options.max_cells))),
-      store_(std::make_unique<Store>(*this)) {
+      store_(*kept_) {
   asked_ = CountAsked(images_);
   keeps_all_ = options_.kept == KeptRays::kAll ||
                (options_.kept == KeptRays::kAuto &&
@@ -77,8 +63,6 @@ FramePixels::FramePixels(const ImageIndex& index, std::vector<KeptFrame> frames,
         std::max(rebin_.probability.xi,
                  kFittingShare * static_cast<double>(options_.max_cells) / asked_ - kEdgeShare);
 }
-
-FramePixels::~FramePixels() = default;
 
 // Returns the estimated number of pixels that frames ask for of these LF images.
 double FramePixels::CountAsked(std::span<const SelectedImage> images) const {
@@ -124,8 +108,6 @@ size_t FramePixels::FixedBytes(const LightField& light_field, size_t bytes_per_p
   if (collects) bytes += plan.plate_bytes + CompletionBytes(element_count);
   return bytes;
 }
-
-const LfImageStore& FramePixels::store() const { return *store_; }
 
 std::vector<PixelRect> FramePixels::RectsOf(LfImageId id, uint32_t rank) const {
   const PinholeCamera camera = light_field_.Camera(id);

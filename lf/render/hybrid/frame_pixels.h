@@ -25,6 +25,7 @@
 #include "lf/render/collect/image_consumer.h"
 #include "lf/render/collect/memory_plan.h"
 #include "lf/render/hybrid/gap_lens.h"
+#include "lf/render/hybrid/kept_store.h"
 #include "lf/render/settings/rebin_settings.h"
 #include "lf/selection/select.h"
 #include "lf/storage/load/lf_image_store.h"
@@ -56,7 +57,6 @@ class FramePixels : public ImageConsumer {
   FramePixels(const ImageIndex& index, std::vector<KeptFrame> frames,
               std::vector<SelectedImage> images, const SelectOptions& select,
               const RebinSettings& options, ThreadPool& pool);
-  ~FramePixels() override;
 
   uint32_t ranks_done() const override { return ranks_done_; }
   PixelRect RectOf(LfImageId id, uint32_t rank) const override;
@@ -65,7 +65,7 @@ class FramePixels : public ImageConsumer {
   // The LF images that the frames ask for, by ascending ranks; `rect` is empty.
   const std::vector<SelectedImage>& images() const { return images_; }
   // A store that loads kept pixels. It loads only LF images of kept().images().
-  const LfImageStore& store() const;
+  const LfImageStore& store() const { return store_; }
 
   const KeptPixels& kept() const { return *kept_; }
   size_t max_pixels() const { return kept_->max_pixels(); }
@@ -107,7 +107,6 @@ class FramePixels : public ImageConsumer {
   std::string Describe() const;
 
  private:
-  class Store;
   std::vector<PixelRect> RectsOf(LfImageId id, uint32_t rank) const;
   double CountAsked(std::span<const SelectedImage> images) const;
   void AddImages(std::span<const BatchImage> images);
@@ -120,7 +119,7 @@ class FramePixels : public ImageConsumer {
   ThreadPool& pool_;
   const std::vector<uint16_t> stored_values_;
   std::unique_ptr<KeptPixels> kept_;
-  std::unique_ptr<Store> store_;
+  KeptStore store_;
   double asked_ = 0;
   bool keeps_all_ = false;
   RebinOptions rebin_;  // options_.rebin, with the probability that fills the room

@@ -11,6 +11,7 @@
 
 #include "lf/camera/aperture.h"
 #include "lf/camera/ray_through.h"
+#include "lf/core/smooth_step.h"
 #include "lf/render/collect/around_lens.h"
 #include "lf/selection/lens_weights/covered_region.h"
 #include "lf/selection/lens_weights/image_feather.h"
@@ -18,12 +19,6 @@
 
 namespace lf {
 namespace {
-
-// Rises smoothly from 0 at `from` to 1 at `to`.
-double SmoothStep(double value, double from, double to) {
-  const double t = std::clamp((value - from) / (to - from), 0.0, 1.0);
-  return t * t * (3 - 2 * t);
-}
 
 // Returns points that have the same convex hull, without most of those inside it: those within the
 // polygon of the extreme points in eight directions. Quicker than sorting all points.

@@ -25,7 +25,7 @@ struct FilmSettings {
   // Which rays frames are made of: kCollect, kRebin or kHybrid (doc/rebinning.md).
   RenderMode mode = RenderMode::kCollect;
   // The defaults if the mode is kCollect (CheckMode() in interpolation.h). If rebin.max_cells is 0,
-  // there are as many cells as fit in half of the memory (kRebin), or in a quarter of it (kHybrid).
+  // there are as many pixels or cells as PlanRenderMemory() (hybrid/render_memory.h) has room for.
   // Its seeds are replaced by `seed`.
   RebinSettings rebin;
   // How rays are read from LF images: reading.estimator is kBilinear or kNearest; reading.filter, a

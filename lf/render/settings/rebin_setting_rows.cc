@@ -33,7 +33,7 @@ void AddKeptRows(std::vector<Setting>& rows) {
           "Most kept pixels or cells in memory (as {memory} allows)\n"
           "A cell holds the mean of its rays. N may end in k, M or G, "
           "such as 3M for 3 million. 0: as many as fit into half of {memory}, or into a quarter of "
-          "it with {mode hybrid}."};
+          "it with {mode hybrid}; pixels at most half of what a frame and two LF images leave."};
   max_rays.get = [](const FilmSettings& film) { return fmt::format("{}", film.rebin.max_cells); };
   max_rays.set = [](const std::string& text, FilmSettings* film) -> Result<void> {
     LF_ASSIGN_OR_RETURN(const uint64_t count, ParseCount(text, "{max_rays}"));
